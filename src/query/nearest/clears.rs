@@ -24,8 +24,8 @@
 //! 2. Otherwise visit the node: push a pair for each of its children that may be within `limit`.
 //! 3. Otherwise visit the leaf. A run of several links is split if a triangle may be within
 //!    `limit`. A single link ends the search if a triangle is within `certain`. A triangle between
-//!    `certain` and `limit` becomes *unresolved*.
-//! 4. At the end, measure the unresolved pairs in double precision.
+//!    `certain` and `limit` makes a *doubtful* pair.
+//! 4. At the end, measure the doubtful pairs in double precision.
 
 use super::link_lower_bounds::{ClearedBy, LinkLowerBounds};
 use super::side_grid::SideGrid;
@@ -114,13 +114,13 @@ impl ClearsSearch<'_> {
             answer = search.clears_all(mesh);
             is_capsule_clear = double.clears_capsule();
         }
-        if let Some(keeps_away) = answer {
+        if let Some(is_clear) = answer {
             let known = if is_capsule_clear { ClearedBy::Capsule } else { ClearedBy::Links };
-            return keeps_away.then_some(known);
+            return is_clear.then_some(known);
         }
-        let mut is_away =
+        let mut is_clear =
             |link| self.search.nearest(&link, Best::within(margin), [None; 2]).nearest().is_none();
-        robot.placed_links().all(&mut is_away).then_some(ClearedBy::Links)
+        robot.placed_links().all(&mut is_clear).then_some(ClearedBy::Links)
     }
 }
 
@@ -140,7 +140,7 @@ struct PairStack<E> {
     query: u64,
     waiting: Vec<NodePair<E>>,
     /// The pairs of link and triangle that the precision of the search cannot decide.
-    unresolved: Vec<(u32, u32)>,
+    doubtful: Vec<(u32, u32)>,
     /// The run and the leaf of the last triangle that was within the margin; a later query tests
     /// this pair first.
     last: Option<(u32, u32)>,
@@ -183,15 +183,15 @@ struct NodePair<E> {
     /// The largest side of the box around the part of the mesh.
     size: E,
     /// The squared distance of the centre of that box from the run's axis.
-    apart: E,
+    squared_distance: E,
 }
 
 /// The outcome in the precision of the search.
 enum SearchOutcome {
-    /// Only unresolved pairs may be within the margin.
-    Doubtful,
+    /// Only doubtful pairs may be within the margin.
+    NoHit,
     /// Some triangle is within the margin.
-    Near,
+    Hit,
     /// The precision does not resolve the robot.
     Unresolved,
 }
@@ -214,8 +214,8 @@ impl<E: Lane> DualTraversal<'_, E> {
     fn clears_all(mut self, mesh: &Mesh) -> Option<bool> {
         match self.search() {
             SearchOutcome::Unresolved => None,
-            SearchOutcome::Near => Some(false),
-            SearchOutcome::Doubtful => {
+            SearchOutcome::Hit => Some(false),
+            SearchOutcome::NoHit => {
                 let Self { level, robot, margin, pairs, work, .. } = self;
                 let is_within = |pairs: &[(u32, u32)]| {
                     let (mut together, link) = ([0; BATCH], robot.link(pairs[0].0 as usize));
@@ -223,14 +223,14 @@ impl<E: Lane> DualTraversal<'_, E> {
                     work.measured += pairs.len() as u64;
                     Best::within(margin).measure_batch(level, &link, mesh, &together[..pairs.len()])
                 };
-                let of_one_link = pairs.unresolved.chunk_by(|one, other| one.0 == other.0);
+                let of_one_link = pairs.doubtful.chunk_by(|one, other| one.0 == other.0);
                 Some(!of_one_link.flat_map(|pairs| pairs.chunks(BATCH)).any(is_within))
             }
         }
     }
 
     fn search(&mut self) -> SearchOutcome {
-        let PairStack { runs, query, waiting, unresolved, last, has_parted_all } = &mut *self.pairs;
+        let PairStack { runs, query, waiting, doubtful, last, has_parted_all } = &mut *self.pairs;
         let links = self.robot.link_tree();
         let zero = E::default();
         *query += 1;
@@ -238,10 +238,11 @@ impl<E: Lane> DualTraversal<'_, E> {
             runs.resize_with(links.len(), PlacedNode::default);
         }
         *has_parted_all = matches!(links[0], LinkNode::Leaf(_));
-        unresolved.clear();
+        doubtful.clear();
         waiting.clear();
         // In the frame of the search the mesh has a length between one and two.
-        let whole = NodePair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
+        let whole =
+            NodePair { run: 0, child: WHOLE_MESH, size: zero.one(), squared_distance: zero };
         waiting.push(whole);
         if let Some(first) = self.first {
             waiting.push(NodePair {
@@ -256,7 +257,7 @@ impl<E: Lane> DualTraversal<'_, E> {
                 run,
                 child: Child::Leaf(leaf).pack(),
                 size: zero,
-                apart: zero,
+                squared_distance: zero,
             });
         }
         dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd))
@@ -282,23 +283,23 @@ impl<E: Lane> DualTraversal<'_, E> {
                         && self.visit_leaf::<L>(token, leaf, pair)
                     {
                         self.pairs.last = Some((pair.run, leaf));
-                        return SearchOutcome::Near;
+                        return SearchOutcome::Hit;
                     }
                 }
             }
         }
-        SearchOutcome::Doubtful
+        SearchOutcome::NoHit
     }
 
     /// Brings a node of the link tree into the frame of the search. None if the precision does not
     /// resolve the node.
     #[inline(never)] // compiled once, not for each instruction set
-    fn place(&mut self, place: u32) -> Option<()> {
-        let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[place as usize]);
+    fn place(&mut self, run: u32) -> Option<()> {
+        let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[run as usize]);
         let frame = &self.tree.frame;
         let searched = SearchLink::between(ends, radius, flat, frame)
             .filter(|link| link.is_resolved(frame))?;
-        self.pairs.runs[place as usize] = PlacedNode {
+        self.pairs.runs[run as usize] = PlacedNode {
             query: self.pairs.query,
             size: searched.length + searched.radius + searched.radius,
             limit: searched.axis_limit(self.margin),
@@ -338,32 +339,32 @@ impl<E: Lane> DualTraversal<'_, E> {
         let placed = &runs[run as usize];
         let lanes = LinkLanes::<L>::new(token, &placed.searched);
         let limit = L::splat(token, placed.searched.limit_of_bounds(placed.limit));
-        let mut apart = [E::default(); WIDTH];
-        let mut near = 0;
+        let mut squared_distances = [E::default(); WIDTH];
+        let mut within = 0;
         for lane in (0..WIDTH).step_by(L::LANES) {
             let (may_meet, squared) = node.bounds::<L>(token, lane).may_meet(&lanes, limit);
-            squared.store(&mut apart[lane..]);
-            near |= may_meet << lane;
+            squared.store(&mut squared_distances[lane..]);
+            within |= may_meet << lane;
         }
-        near &= node.used();
+        within &= node.used();
         let bottom = waiting.len();
-        while near != 0 {
-            let child = near.trailing_zeros() as usize;
-            near &= near - 1;
+        while within != 0 {
+            let child = within.trailing_zeros() as usize;
+            within &= within - 1;
             let pair = NodePair {
                 run,
                 child: node.children[child],
                 size: node.size(child),
-                apart: apart[child],
+                squared_distance: squared_distances[child],
             };
             // Insertion sort: there are few new pairs.
             waiting.push(pair);
-            let mut place = waiting.len() - 1;
-            while place > bottom && waiting[place - 1].apart < pair.apart {
-                waiting[place] = waiting[place - 1];
-                place -= 1;
+            let mut top = waiting.len() - 1;
+            while top > bottom && waiting[top - 1].squared_distance < pair.squared_distance {
+                waiting[top] = waiting[top - 1];
+                top -= 1;
             }
-            waiting[place] = pair;
+            waiting[top] = pair;
         }
     }
 
@@ -413,14 +414,14 @@ impl<E: Lane> DualTraversal<'_, E> {
             if L::bits(bounds.upper.lt(certain)) != 0 {
                 return true;
             }
-            let mut near = bounds.nearer;
-            while near != 0 {
-                let triangle = leaf.triangles[lane + near.trailing_zeros() as usize];
-                near &= near - 1;
+            let mut nearer = bounds.nearer;
+            while nearer != 0 {
+                let triangle = leaf.triangles[lane + nearer.trailing_zeros() as usize];
+                nearer &= nearer - 1;
                 let pair = (link as u32, triangle);
                 // A leaf that is not full repeats its last triangle.
-                if self.pairs.unresolved.last() != Some(&pair) {
-                    self.pairs.unresolved.push(pair);
+                if self.pairs.doubtful.last() != Some(&pair) {
+                    self.pairs.doubtful.push(pair);
                 }
             }
         }

@@ -17,7 +17,7 @@ use parry3d_f64::math::Real;
 pub(crate) struct PerLinkMemory {
     /// The nearest triangle of each link at the last query.
     last: Vec<u32>,
-    few: CandidateBatch,
+    batch: CandidateBatch,
 }
 
 impl PerLinkMemory {
@@ -33,28 +33,29 @@ pub(crate) fn per_link(
     memory: &mut PerLinkMemory,
     out: &mut Vec<LinkProximity>,
 ) {
-    let PerLinkMemory { last, few } = memory;
+    let PerLinkMemory { last, batch } = memory;
     out.clear();
-    few.clear();
+    batch.clear();
     let mut before = None;
     for number in 0..robot.links().len() {
         let link = robot.link(number);
         let start = [last.get(number).copied(), before];
-        let answer = few.add(number, &link, |few| search.nearest_or_candidates(&link, start, few));
+        let answer =
+            batch.add(number, &link, |found| search.nearest_or_candidates(&link, start, found));
         before = Some(match answer {
             Ok(best) => {
                 let nearest = best.nearest().unwrap_or_else(|| search.any(&link));
                 out.push(link.answer(number, &nearest));
                 nearest.triangle
             }
-            Err(likely) => {
+            Err(first_candidate) => {
                 out.push(LinkProximity::placeholder());
-                likely
+                first_candidate
             }
         });
     }
     let MeshSearch { level, hierarchy, scratch, .. } = search;
-    scratch.work.measured += few.answer(level, &hierarchy.mesh, out);
+    scratch.work.measured += batch.answer(level, &hierarchy.mesh, out);
     last.clear();
     last.extend(out.iter().map(|answer| answer.witness.triangle));
 }
@@ -103,17 +104,20 @@ impl CandidateBatch {
         let Self { links, nearest, triangles, owners } = self;
         let pairs =
             owners.iter().zip(&*triangles).map(|(&owner, &triangle)| (&links[owner].1, triangle));
-        let mut place = 0;
+        let mut owners = owners.iter();
+        let mut count = 0;
         rank_each(level, mesh, pairs, |ranked| {
-            nearest[owners[place]].take(ranked.nearest);
-            place += 1;
+            if let Some(&owner) = owners.next() {
+                nearest[owner].take(ranked.nearest);
+            }
+            count += 1;
         });
         for ((number, link), best) in links.iter().zip(nearest) {
             if let Some(nearest) = best.nearest() {
                 out[*number] = link.answer(*number, &nearest);
             }
         }
-        place as u64
+        count
     }
 }
 
