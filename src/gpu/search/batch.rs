@@ -53,7 +53,7 @@
 
 use super::answer::{Answer, Candidate, Found, Measure};
 use super::chunk::{COUNTER_BYTES, Chunk, ENTRY_BYTES, HEAD_BYTES, capacity_for};
-use super::chunk_layout::{RobotLayout, TASK_SIZE, chunk_from};
+use super::chunk_upload::{RobotLayout, TASK_SIZE, chunk_from};
 use super::device::Searched;
 #[cfg(doc)]
 use super::kernels::SLOTS;
@@ -337,7 +337,7 @@ impl<'a> Heads<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::search::chunk_layout::ChunkLayout;
+    use crate::gpu::search::chunk_upload::ChunkLayout;
     use crate::gpu::search::robots::Robots;
     use crate::mesh::Mesh;
     use crate::robot::Chain;

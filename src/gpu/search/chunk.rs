@@ -1,17 +1,15 @@
 //! A chunk of robots on the device.
 //!
 //! # Algorithm
-//! 1. **Lay out**: which link groups, points and radii each robot has, and where they begin
-//!    (`chunk_layout`).
-//! 2. **Upload** link groups, shapes and radii (`chunk_upload`).
+//! 1. **Lay out**: which link groups, points and radii each robot has, and where they begin.
+//! 2. **Upload** link groups, shapes and radii. Steps 1 and 2 are in `chunk_upload`.
 //! 3. **Submit**: compute the points if the shapes are sections; the passes of the question; copy
 //!    the results to where the CPU can read them.
 //!
 //! A second search of the same robots needs step 3 alone.
 
 use super::bounds::FAR;
-use super::chunk_layout::ChunkLayout;
-use super::chunk_upload::{Inputs, Upload, fits, uniform};
+use super::chunk_upload::{ChunkLayout, Inputs, Upload, fits, uniform};
 use super::device::Searched;
 use super::kernels::{BENDING_THREADS, GROUP_SIZE, Question, SearchQuery};
 use super::robots::Packed;

@@ -6,7 +6,7 @@
 //! | `engine` | the engine: [`GpuSearch`] |
 //! | `batch` | a batch: the two passes, measuring, and the proof that no answer is lost |
 //! | `answer` | the questions, and their answers from candidates |
-//! | `chunk` | a chunk of a batch: its submission; `chunk_layout` and `chunk_upload` |
+//! | `chunk` | a chunk of a batch: its submission; `chunk_upload`: its layout and upload |
 //! | `robots` | the robots of a batch, and how chains are packed |
 //! | `sections`, `bending` | robots of sections of constant curvature: the device computes points |
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
@@ -21,7 +21,6 @@ mod bending;
 mod bending_tests;
 mod bounds;
 mod chunk;
-mod chunk_layout;
 mod chunk_upload;
 mod device;
 mod engine;
