@@ -4,13 +4,14 @@
 //! - **Ball** of a body: the ball around the middle of its axis that contains the body.
 //! - **Node**: a run of consecutive bodies and a ball around theirs. The lists follow the tube, so
 //!   a run is compact. A tree over n bodies has 2 n - 1 nodes in preorder; the first half of a run
-//!   comes first.
+//!   comes first. Two lists may share a tree: its root then divides where the second one begins.
 //!
 //! # Claim
-//! [`near_pairs`] visits all pairs whose bodies are at most `bound` apart.
+//! [`NearPairs`] visits all pairs whose bodies are at most `bound` apart and that `may_ask` admits.
 //!
 //! **Proof.** A node contains its bodies. So two nodes are no farther apart than any two bodies of
-//! them, and a pair is skipped only if nodes that contain it are farther apart than `bound`.
+//! them, and a pair is skipped only if nodes that contain it are farther apart than `bound` or
+//! have only pairs that `may_ask` excludes.
 //!
 //! **Rounding.** Centres and radii err by few u of the largest coordinate. `bound` includes the
 //! slack of the tubes, which is 128 u of it.
@@ -18,6 +19,7 @@
 use crate::distance::Scalar;
 use crate::pair::PlacedLink;
 use parry3d_f64::math::{Real, Vector};
+use std::ops::Range;
 
 /// Below this number of pairs two plain loops are cheaper.
 const FEW: usize = 1 << 12;
@@ -58,6 +60,8 @@ impl Ball {
 pub(super) struct BallTree {
     nodes: Vec<Ball>,
     count: usize,
+    /// Where the root divides.
+    split: usize,
 }
 
 /// A node and its run of bodies.
@@ -69,20 +73,22 @@ struct Run {
 }
 
 impl Run {
-    fn halves(self) -> [Self; 2] {
-        let Self { node, first, count } = self;
-        let half = count / 2;
-        [
-            Self { node: node + 1, first, count: half },
-            Self { node: node + 2 * half, first: first + half, count: count - half },
-        ]
+    fn bodies(&self) -> Range<usize> {
+        self.first..self.first + self.count
     }
 }
 
 impl BallTree {
-    /// Replaces the tree by one over these bodies.
-    pub(super) fn build<'b>(&mut self, bodies: impl ExactSizeIterator<Item = &'b PlacedLink>) {
+    /// Replaces the tree by one over these bodies. The first `split` of them are a list of their
+    /// own.
+    pub(super) fn build<'b>(
+        &mut self,
+        bodies: impl ExactSizeIterator<Item = &'b PlacedLink>,
+        split: usize,
+    ) {
         self.count = bodies.len();
+        let is_within = (1..self.count).contains(&split);
+        self.split = if is_within { split } else { self.count / 2 };
         self.nodes.clear();
         self.nodes.resize((2 * self.count).saturating_sub(1), Ball::default());
         let mut bodies = bodies.map(Ball::around);
@@ -95,7 +101,7 @@ impl BallTree {
         let ball = if run.count == 1 {
             balls.next().unwrap_or_default()
         } else {
-            let [low, high] = run.halves();
+            let [low, high] = self.halves(run);
             let low = self.fill(low, balls);
             low.around_both(&self.fill(high, balls))
         };
@@ -105,6 +111,14 @@ impl BallTree {
 
     fn root(&self) -> Run {
         Run { node: 0, first: 0, count: self.count }
+    }
+
+    fn halves(&self, Run { node, first, count }: Run) -> [Run; 2] {
+        let half = if node == 0 { self.split } else { count / 2 };
+        [
+            Run { node: node + 1, first, count: half },
+            Run { node: node + 2 * half, first: first + half, count: count - half },
+        ]
     }
 }
 
@@ -117,40 +131,54 @@ pub(super) fn pays(counts: [usize; 2]) -> bool {
 #[derive(Clone, Debug, Default)]
 pub(super) struct WaitingRuns(Vec<[Run; 2]>);
 
-/// Calls `visit` with the pairs of bodies that may be at most `bound` apart; each call returns the
-/// next bound. For a tree and itself the first index is at most the second.
-///
-/// The nearer of two pairs of nodes comes first.
-pub(super) fn near_pairs(
-    trees: [&BallTree; 2],
-    WaitingRuns(stack): &mut WaitingRuns,
-    mut bound: Real,
-    mut visit: impl FnMut([usize; 2]) -> Real,
-) {
-    let is_same = std::ptr::eq(trees[0], trees[1]);
-    if trees.iter().any(|tree| tree.count == 0) {
-        return;
-    }
-    let apart = |runs: &[Run; 2]| {
-        let [one, two] = [0, 1].map(|k: usize| &trees[k].nodes[runs[k].node]);
-        one.apart(two)
-    };
-    stack.clear();
-    stack.push(trees.map(BallTree::root));
-    while let Some(runs) = stack.pop() {
-        let [one, two] = runs;
-        // This form keeps pairs whose distance is NaN.
-        if apart(&runs) > bound {
-            continue;
+/// The pairs of bodies that may be at most `bound` apart, the nearer of two pairs of nodes first.
+/// For a tree and itself the first index is at most the second.
+pub(super) struct NearPairs<'t> {
+    trees: [&'t BallTree; 2],
+    waiting: &'t mut Vec<[Run; 2]>,
+    pub bound: Real,
+}
+
+impl<'t> NearPairs<'t> {
+    pub(super) fn new(
+        trees: [&'t BallTree; 2],
+        WaitingRuns(waiting): &'t mut WaitingRuns,
+        bound: Real,
+    ) -> Self {
+        waiting.clear();
+        if trees.iter().all(|tree| tree.count > 0) {
+            waiting.push(trees.map(BallTree::root));
         }
-        if one.count == 1 && two.count == 1 {
-            bound = visit([one.first, two.first]);
-        } else if is_same && one.node == two.node {
-            let [low, high] = one.halves();
-            stack.extend([[low, low], [high, high], [low, high]]);
-        } else {
+        Self { trees, waiting, bound }
+    }
+
+    /// Returns the next pair. `may_ask` tells of two runs whether any pair of them is wanted.
+    pub(super) fn next(
+        &mut self,
+        may_ask: impl Fn([Range<usize>; 2]) -> bool,
+    ) -> Option<[usize; 2]> {
+        let Self { trees, waiting, bound } = self;
+        let is_same = std::ptr::eq(trees[0], trees[1]);
+        let apart = |runs: &[Run; 2]| {
+            let [one, two] = [0, 1].map(|k: usize| &trees[k].nodes[runs[k].node]);
+            one.apart(two)
+        };
+        while let Some(runs) = waiting.pop() {
+            let [one, two] = runs;
+            // This form keeps pairs whose distance is NaN.
+            if apart(&runs) > *bound || !may_ask(runs.map(|run| run.bodies())) {
+                continue;
+            }
+            if one.count == 1 && two.count == 1 {
+                return Some([one.first, two.first]);
+            }
+            if is_same && one.node == two.node {
+                let [low, high] = trees[0].halves(one);
+                waiting.extend([[low, low], [high, high], [low, high]]);
+                continue;
+            }
             let k = usize::from(two.count > one.count);
-            let mut halves = runs[k].halves().map(|half| {
+            let mut halves = trees[k].halves(runs[k]).map(|half| {
                 let mut runs = runs;
                 runs[k] = half;
                 runs
@@ -158,7 +186,8 @@ pub(super) fn near_pairs(
             if apart(&halves[0]) <= apart(&halves[1]) {
                 halves.reverse();
             }
-            stack.extend(halves);
+            waiting.extend(halves);
         }
+        None
     }
 }

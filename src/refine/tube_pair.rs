@@ -18,7 +18,7 @@
 //!    decreases.
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
-use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
+use super::ball_tree::{BallTree, NearPairs, WaitingRuns, pays};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable, UpperBound};
@@ -199,7 +199,7 @@ impl<'a> TubePair<'a> {
         }
         if pays(bodies.each_ref().map(Vec::len)) {
             for (tree, bodies) in trees.iter_mut().zip(bodies) {
-                tree.build(bodies.iter().map(|(_, outer)| &outer.body));
+                tree.build(bodies.iter().map(|(_, outer)| &outer.body), 0);
             }
         }
         Ok(())
@@ -223,10 +223,8 @@ impl<'a> TubePair<'a> {
         };
         if pays([first.len(), second.len()]) {
             let bound = upper + 2.0 * self.slack();
-            near_pairs(trees.each_ref(), waiting, bound, |pair| {
-                offer(pair);
-                bound
-            });
+            let mut near = NearPairs::new(trees.each_ref(), waiting, bound);
+            std::iter::from_fn(|| near.next(|_| true)).for_each(offer);
         } else {
             (0..first.len()).for_each(|i| (0..second.len()).for_each(|j| offer([i, j])));
         }
@@ -247,13 +245,14 @@ impl<'a> TubePair<'a> {
             return None;
         }
         let (mut best, mut nearest) = (Real::INFINITY, None);
-        near_pairs(trees.each_ref(), waiting, best, |[i, j]| {
+        let mut near = NearPairs::new(trees.each_ref(), waiting, best);
+        while let Some([i, j]) = near.next(|_| true) {
             let at_least = self.at_least(&[first[i].1, second[j].1]);
             if at_least < best {
                 (best, nearest) = (at_least, Some([first[i], second[j]]));
+                near.bound = best + 2.0 * self.slack();
             }
-            best + 2.0 * self.slack()
-        });
+        }
         nearest.map(|pair| {
             let [one, two] = pair.map(|(_, outer)| outer.body);
             let (feet, _) = one.nearest_on_axes(&two);

@@ -100,7 +100,7 @@
 //! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
-use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
+use super::ball_tree::{BallTree, NearPairs, WaitingRuns};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable};
@@ -114,6 +114,7 @@ use crate::pair::{JoinedLink, MovedLinks, NearestOfLinks, PlacedLink};
 use crate::robot::is_step;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
 
 /// Pairs that may or may not be queried are not halved if their turn is uncertain by less than this
 /// (rad).
@@ -174,7 +175,14 @@ type SelfBody = (Piece, BoundingBody, Option<usize>);
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfPairQueue {
     pieces: Vec<Piece>,
+    /// The pieces along the tube, then the faces along the tube.
     bodies: Vec<SelfBody>,
+    /// How many pieces there are.
+    count: usize,
+    /// For each body, upper bounds on the turn up to its start and up to its end.
+    turned: Vec<[Real; 2]>,
+    /// For each body, how many faces before it are at starts and at ends of sections.
+    faces_before: Vec<[u32; 2]>,
     tree: BallTree,
     waiting: WaitingRuns,
     nearest: NearestPairs,
@@ -247,8 +255,33 @@ impl<'a> TubeWithItself<'a> {
         beginning: &mut SelfPairQueue,
         pairs: &mut Vec<SelfPair>,
     ) -> Result<bool, ProximityError> {
-        let SelfPairQueue { pieces, bodies, tree, waiting, nearest } = beginning;
+        let mut nearest = std::mem::take(&mut beginning.nearest);
+        nearest.begin(most);
+        let begun = self.initial_pairs(scale, upper, beginning)?;
+        begun.for_each(|(places, at_least, _)| nearest.push(at_least, places));
+        let (order, is_all) = nearest.farthest_first();
+        let bodies = &beginning.bodies;
+        pairs.clear();
+        pairs.extend(order.map(|[i, j]| pair(&bodies[i], &bodies[j])));
+        beginning.nearest = nearest;
+        Ok(is_all)
+    }
+
+    /// Returns the pairs of [`begin`](Self::begin) one after another, with their places in
+    /// `bodies` and lower bounds on their distances. Of two groups of pairs the nearer comes first.
+    ///
+    /// # Errors
+    /// A curve is not finite.
+    pub(crate) fn initial_pairs<'q>(
+        &self,
+        scale: Real,
+        upper: Real,
+        beginning: &'q mut SelfPairQueue,
+    ) -> Result<impl Iterator<Item = ([usize; 2], Real, SelfPair)> + use<'a, 'q>, ProximityError>
+    {
         let tube = self.tube();
+        let SelfPairQueue { pieces, bodies, count, turned, faces_before, tree, waiting, .. } =
+            beginning;
         tube.begin(scale.max(0.25 * tube.widest()), pieces);
         pieces.sort_unstable_by_key(|piece| (piece.section, piece.from));
         bodies.clear();
@@ -257,33 +290,72 @@ impl<'a> TubeWithItself<'a> {
             tube.check_finite(piece, &outer)?;
             bodies.push((*piece, outer, None));
         }
+        *count = bodies.len();
         self.push_faces(bodies);
-        nearest.begin(most);
-        let mut offer = |[i, j]: [usize; 2]| {
-            let pair = pair(&bodies[i], &bodies[j]);
-            if !self.turns_enough(&pair) {
-                return;
+        turned.clear();
+        faces_before.clear();
+        faces_before.push([0; 2]);
+        let mut faces = [0; 2];
+        for (piece, _, face) in bodies.iter() {
+            let at = |tick| tube.tube.turned_at_most(self.turns, piece.section, tick);
+            turned.push([at(piece.from), at(piece.to)]);
+            if let Some(end) = face {
+                faces[*end] += 1;
             }
-            let at_least = self.both.at_least(&pair.outers);
-            if at_least <= upper && self.may_count(&pair) {
-                nearest.push(at_least, [i, j]);
-            }
-        };
-        if pays([bodies.len(); 2]) {
-            tree.build(bodies.iter().map(|(_, outer, _)| &outer.body));
-            let bound = upper + 2.0 * self.slack();
-            near_pairs([&*tree; 2], waiting, bound, |pair| {
-                offer(pair);
-                bound
-            });
-        } else {
-            let count = bodies.len();
-            (0..count).for_each(|i| (i..count).for_each(|j| offer([i, j])));
+            faces_before.push(faces);
         }
-        let (order, is_all) = nearest.farthest_first();
-        pairs.clear();
-        pairs.extend(order.map(|[i, j]| pair(&bodies[i], &bodies[j])));
-        Ok(is_all)
+        tree.build(bodies.iter().map(|(_, outer, _)| &outer.body), *count);
+        let own = *self;
+        let mut near = NearPairs::new([&*tree; 2], waiting, upper + 2.0 * self.slack());
+        Ok(std::iter::from_fn(move || {
+            loop {
+                let [i, j] = near
+                    .next(|runs| own.runs_may_turn_enough(&runs, *count, turned, faces_before))?;
+                let pair = pair(&bodies[i], &bodies[j]);
+                if !own.turns_enough(&pair) {
+                    continue;
+                }
+                let at_least = own.both.at_least(&pair.outers);
+                if at_least <= upper && own.may_count(&pair) {
+                    return Some(([i, j], at_least, pair));
+                }
+            }
+        }))
+    }
+
+    /// Whether a pair of bodies of two runs may turn as required. The first `count` bodies are
+    /// pieces.
+    ///
+    /// **Claim.** A pair turns by at most the turn from the start of the first body of one run to
+    /// the end of the last body of the other, for one of both orders.
+    ///
+    /// **Proof.** Upper bounds on the turn up to a place increase along the tube. So the turn of a
+    /// pair is at most the difference between the end of the run of its later body and the start of
+    /// the run of its earlier one. Their rounding is part of the slack of [`TubeTurns`].
+    fn runs_may_turn_enough(
+        &self,
+        runs: &[Range<usize>; 2],
+        count: usize,
+        turned: &[[Real; 2]],
+        faces_before: &[[u32; 2]],
+    ) -> bool {
+        if runs.iter().any(|run| run.start < count && run.end > count) {
+            return true;
+        }
+        let [one, two] = runs;
+        let between =
+            |from: &Range<usize>, to: &Range<usize>| turned[to.end - 1][1] - turned[from.start][0];
+        let most = between(one, two).max(between(two, one));
+        let has = |run: &Range<usize>, end: usize| {
+            faces_before[run.end][end] > faces_before[run.start][end]
+        };
+        let angle = match runs.iter().filter(|run| run.start >= count).count() {
+            0 => PI,
+            2 if has(one, 1) && has(two, 0) => 0.0,
+            _ => FRAC_PI_2,
+        };
+        let extra = self.moves.map_or(0.0, SectionMotions::max_extra_turn);
+        most.is_nan() || self.turns.may_reach(most + extra, angle)
     }
 
     /// Adds all faces to the pieces: the tube's flat ends and the wider sides of its steps.

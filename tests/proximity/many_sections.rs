@@ -69,6 +69,30 @@ fn a_robot_of_many_sections_is_decided_as_its_links() {
     }
 }
 
+/// With a margin wider than the robot every pair is near: the first one that counts decides, and
+/// pairs that turn too little are left out in groups.
+#[test]
+fn a_margin_wider_than_a_robot_of_many_sections_needs_memory_for_its_sections() {
+    let count = 1500;
+    let (chain, tube) = helix(count, 0.3);
+    let points: Vec<_> = chain.links().iter().map(|link| link.start()).collect();
+    let radii: Vec<_> = chain.links()[1..].iter().map(|link| link.radius()).collect();
+    let curve = Tube::from_samples(&points, &radii, None).unwrap();
+    // A quarter of a turn.
+    let straight = Tube::from_samples(&points[..100], &radii[..99], None).unwrap();
+    for (tube, expected) in
+        [(tube, Decision::Contact), (curve, Decision::Contact), (straight, Decision::Clear)]
+    {
+        let mut decision = None;
+        let memory = allocation_counter::measure(|| {
+            decision = Some(SelfQuery::new().clears_tube(&tube, 1e3, 1e-3).unwrap());
+        });
+        assert_eq!(decision, Some(expected));
+        // All pairs of pieces are a hundred times as many bytes.
+        assert!(memory.bytes_max < 4000 * u64::from(count), "{}", memory.bytes_max);
+    }
+}
+
 /// A coil of radius 1 and pitch 0.5 by a wire of radius 0.4 overlaps itself by 0.3, for every
 /// number of frames.
 #[test]

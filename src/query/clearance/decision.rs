@@ -40,8 +40,13 @@ pub(crate) fn clears_tube(
     let TubeMemory { pieces, begun } = memory;
     tube.begin_coarse(begun);
     let start = last.map(|last| last.triangle);
-    let (decision, found) =
-        clears_pieces(tube, pieces, begun.drain(..), None, Wanted { margin, resolution, start })?;
+    let (decision, found) = clears_pieces(
+        tube,
+        pieces,
+        begun.drain(..).rev(),
+        None,
+        Wanted { margin, resolution, start },
+    )?;
     if let Some(found) = &found {
         *last = Some(found.into());
     }
@@ -58,7 +63,8 @@ pub(crate) struct Wanted {
 }
 
 /// Decides whether all pieces stay farther away than the margin; a contact comes with its place.
-/// `best`: a known upper bound.
+/// `begun`: the initial pieces, preferably the nearest first. A contact ends the search, so later
+/// ones are not computed. `best`: a known upper bound.
 ///
 /// # Errors
 /// The curve is not finite, or its samples allow no decision at that resolution.
@@ -70,12 +76,7 @@ pub(crate) fn clears_pieces<T: Refinable>(
     wanted: Wanted,
 ) -> Result<(Decision, Option<T::Upper>), ProximityError> {
     pieces.clear();
-    for piece in begun {
-        let narrow = 0.5 * tube.radius(&piece).max(wanted.margin);
-        let state = PieceState::Open;
-        pieces.push(tube, PendingPiece { piece, lower: 0.0, state, narrow, levels: MOST_LEVELS });
-    }
-    let search = DecisionSearch {
+    let mut search = DecisionSearch {
         tube,
         pieces,
         wanted,
@@ -84,6 +85,14 @@ pub(crate) fn clears_pieces<T: Refinable>(
         is_undecided: false,
         left: MOST_DIVISIONS,
     };
+    for piece in begun {
+        if search.is_contact() {
+            break;
+        }
+        let narrow = 0.5 * search.tube.radius(&piece).max(wanted.margin);
+        let state = PieceState::Open;
+        search.examine(&PendingPiece { piece, lower: 0.0, state, narrow, levels: MOST_LEVELS })?;
+    }
     search.run()
 }
 
@@ -104,8 +113,7 @@ impl<T: Refinable> DecisionSearch<'_, T> {
     fn run(mut self) -> Result<(Decision, Option<T::Upper>), ProximityError> {
         let Wanted { margin, resolution, .. } = self.wanted;
         let apart = resolution + self.tube.position_uncertainty();
-        // An infinite margin is kept only if nothing is found.
-        while self.best.is_none_or(|best| best.upper() > margin) {
+        while !self.is_contact() {
             let Some(first) = self.pieces.first() else { break };
             let is_near = first.is_measured && first.least >= self.upper() - apart;
             if is_near && !self.is_stuck() {
@@ -142,6 +150,12 @@ impl<T: Refinable> DecisionSearch<'_, T> {
             self.is_undecided = true;
         }
         Ok((if self.is_undecided { Decision::Undecided } else { Decision::Clear }, None))
+    }
+
+    /// Whether some upper bound is within the margin. An infinite margin is kept only if nothing is
+    /// found.
+    fn is_contact(&self) -> bool {
+        self.best.is_some_and(|best| best.upper() <= self.wanted.margin)
     }
 
     fn upper(&self) -> Real {

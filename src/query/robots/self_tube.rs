@@ -11,7 +11,6 @@ use parry3d_f64::math::Real;
 pub(crate) struct SelfTubeMemory {
     turns: TubeTurns,
     beginning: SelfPairQueue,
-    pairs: Vec<SelfPair>,
     pending: PendingPieces<SelfPair, SelfPair, PairUpperBound>,
 }
 
@@ -27,14 +26,14 @@ pub(crate) fn self_clears_tube(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    let SelfTubeMemory { turns, beginning, pairs, pending } = memory;
+    let SelfTubeMemory { turns, beginning, pending } = memory;
     tube.measure_turns(turns)?;
     let own = TubeWithItself::new(tube, turns)?;
     let wanted = Wanted { margin, resolution, start: None };
     let mut clears = |mut own: TubeWithItself| -> Result<Decision, ProximityError> {
         // The initial pieces must not depend on the resolution: the order of pieces would.
-        own.begin(margin, margin, usize::MAX, beginning, pairs)?;
-        let (decision, _) = clears_pieces(&mut own, pending, pairs.drain(..), None, wanted)?;
+        let pairs = own.initial_pairs(margin, margin, beginning)?.map(|(.., pair)| pair);
+        let (decision, _) = clears_pieces(&mut own, pending, pairs, None, wanted)?;
         Ok(decision)
     };
     match own.less_known() {

@@ -153,7 +153,8 @@ fn clear_as_stated(
     let TubesMemory { beginning, pairs, pending, last } = memory;
     tubes.begin(Real::INFINITY, margin, usize::MAX, beginning, pairs)?;
     let wanted = Wanted { margin, resolution, start: None };
-    let (decision, found) = clears_pieces(tubes, pending, pairs.drain(..), Some(best), wanted)?;
+    let (decision, found) =
+        clears_pieces(tubes, pending, pairs.drain(..).rev(), Some(best), wanted)?;
     if let Some(PairUpperBound { sections, arcs, .. }) = found {
         *last = Some((sections, arcs));
     }
