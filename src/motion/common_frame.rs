@@ -312,8 +312,17 @@ impl<'a> CarriedMotion<'a> {
     }
 
     /// An upper bound on the angular speed of the frame.
-    pub(super) fn turning(&self) -> Real {
+    pub(crate) fn turning(&self) -> Real {
         self.frame.map_or(0.0, |frame| (length(frame.turn) + frame.turn_off) * UP)
+    }
+
+    /// Upper bounds on the angular speeds of the frames of two robots, seen from the frame in which
+    /// their sum is least: the frame at rest, or that of the first robot.
+    pub(crate) fn least_turning(motions: &[Self; 2]) -> [Real; 2] {
+        let at_rest = motions.each_ref().map(Self::turning);
+        let [first, second] = motions.each_ref().map(Self::frame);
+        let beside = (length(first.turn - second.turn) + first.turn_off + second.turn_off) * UP;
+        if beside < at_rest[0] + at_rest[1] { [0.0, beside] } else { at_rest }
     }
 
     /// The frame; without one the frame at rest.

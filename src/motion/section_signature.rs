@@ -65,6 +65,9 @@ pub(crate) struct MotionDrift<'a> {
     pub motion: &'a CarriedMotion<'a>,
     /// The time of the shape.
     pub t: Real,
+    /// An upper bound on the angular speed of the robot's frame, seen from the frame in which
+    /// distances are bounded.
+    pub turning: Real,
 }
 
 impl Drift for MotionDrift<'_> {
@@ -94,7 +97,7 @@ impl Drift for MotionDrift<'_> {
     }
 
     fn turns(&self, section: usize) -> Real {
-        let turn = self.motion.stated(section, [0.0, 1.0]).turn + self.motion.turning();
+        let turn = self.motion.stated(section, [0.0, 1.0]).turn + self.turning;
         self.motion.half * if turn >= 0.0 { turn } else { Real::INFINITY }
     }
 

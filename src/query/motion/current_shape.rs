@@ -38,8 +38,10 @@ impl CurrentShape {
     }
 
     /// Marks the flat ends that stay flat in an interval, whose middle shape this is. Returns how
-    /// far the other flat ends move.
-    pub(super) fn mark_lasting_faces_in(&mut self, motion: &CarriedMotion) -> Real {
-        self.tube.mark_lasting_faces_between(&MotionDrift { motion, t: midpoint(motion.times) })
+    /// far the other flat ends move. `turning`: an upper bound on the angular speed of the motion's
+    /// frame, seen from the frame in which distances are bounded.
+    pub(super) fn mark_lasting_faces_in(&mut self, motion: &CarriedMotion, turning: Real) -> Real {
+        let t = midpoint(motion.times);
+        self.tube.mark_lasting_faces_between(&MotionDrift { motion, t, turning })
     }
 }

@@ -271,7 +271,9 @@ fn shapes<'p>(
     times: [Real; 2],
 ) -> Result<PlacedShapes<'p>, ProximityError> {
     let carried = motions.map(|motion| CarriedMotion::new(motion, times, half_length(times)));
-    let [first, second] = [shape(&carried[0], first), shape(&carried[1], second)];
+    let turning = CarriedMotion::least_turning(&carried);
+    let [first, second] =
+        [shape(&carried[0], turning[0], first), shape(&carried[1], turning[1], second)];
     let (first, change) = first.map_err(|error| error.of_robot(names[0]))?;
     let (second, other) = second.map_err(|error| error.of_robot(names[1]))?;
     Ok(PlacedShapes { tubes: [first, second], cap_change: change.max(other), carried })
@@ -280,10 +282,11 @@ fn shapes<'p>(
 /// Places a robot in its middle shape.
 fn shape<'p>(
     carried: &CarriedMotion,
+    turning: Real,
     current: &'p mut CurrentShape,
 ) -> Result<(PlacedTube<'p>, Real), ProximityError> {
     let pose = current.set_time(carried.motion, midpoint(carried.times))?;
-    let cap_change = current.mark_lasting_faces_in(carried);
+    let cap_change = current.mark_lasting_faces_in(carried, turning);
     Ok((PlacedTube::new(&current.tube, &pose, 0.0)?.moving(), cap_change))
 }
 

@@ -216,7 +216,8 @@ impl MotionSearch<'_> {
         } = &mut *self.memory;
         let pose = current.set_time(motion, t)?;
         let carried = CarriedMotion::new(motion, times, half_length(times));
-        let approach_bound = ApproachBound::new(times, current.mark_lasting_faces_in(&carried));
+        let cap_change = current.mark_lasting_faces_in(&carried, carried.turning());
+        let approach_bound = ApproachBound::new(times, cap_change);
         let MeshSearch { level, hierarchy, .. } = self.search;
         let search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (reach, mesh_speed, search) = if self.does_mesh_move {

@@ -78,7 +78,7 @@ fn test_interval(
     let SelfMotionMemory { current, turns, moves, beginning, pairs, .. } = memory;
     let pose = current.set_time(motion, midpoint(times))?;
     let carried = CarriedMotion::new(motion, times, half_length(times));
-    let cap_change = current.mark_lasting_faces_in(&carried);
+    let cap_change = current.mark_lasting_faces_in(&carried, 0.0);
     measure_moves(&carried, current.tube.sections(), moves)?;
     if moves.max_extra_turn() > MAX_EXTRA_TURN {
         return Ok((IntervalResult::empty(), interval.rest(0.0)));

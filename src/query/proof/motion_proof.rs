@@ -41,7 +41,11 @@ pub(crate) fn motion_proof(
         sections.check(t, &tube)?;
         shapes += 1;
         let carried = CarriedMotion::new(motion, times, half);
-        tube.mark_lasting_faces_between(&MotionDrift { motion: &carried, t });
+        tube.mark_lasting_faces_between(&MotionDrift {
+            motion: &carried,
+            t,
+            turning: carried.turning(),
+        });
         let placed = PlacedTube::new(&tube, &pose, reach)?.moving();
         let fastest = (0..placed.sections().len()).map(|section| {
             let speed = carried.speed((&tube, &placed.pose), section, [0.0, 1.0]).point;
