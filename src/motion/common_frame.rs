@@ -138,8 +138,7 @@ impl CommonFrame {
     /// moves. `pose`: the base in the middle of the interval. `half`: half of the interval. `None`
     /// if the interval is so long that this frame is not known better than its own speed.
     pub(super) fn on_base(self, base: &Self, pose: &Pose, half: Real) -> Option<Self> {
-        let is_shift = self.turn == Vector::ZERO && self.turn_off == 0.0;
-        let at = if is_shift { Vector::ZERO } else { self.at };
+        let at = if self.is_shift() { Vector::ZERO } else { self.at };
         let lever = pose.rotation * at;
         let [turning, speed] = [base.turn, self.velocity].map(length);
         let carried = base.turn.cross(lever);
@@ -161,6 +160,11 @@ impl CommonFrame {
         let velocity = base.velocity + carried + pose.rotation * self.velocity;
         let frame = Self { at: pose.translation + lever, velocity, turn, off, turn_off };
         Some(frame.rounded(pose))
+    }
+
+    /// Whether the frame does not turn.
+    fn is_shift(&self) -> bool {
+        self.turn == Vector::ZERO && self.turn_off == 0.0
     }
 
     /// This frame in another frame at rest, into which `pose` leads.
@@ -245,7 +249,8 @@ impl CarriedPiece {
         let tilt = ends[0].tilt.max(ends[1].tilt) + tube.turn().unwrap_or(0.0) + turned + rounding;
         Self {
             ends: [0, 1].map(|end| *pose * ends[end].point),
-            beside: RigidPath::beside(tube, section, shares) + rounding * reach,
+            beside: RigidPath::beside_of(tube, section, shares, ends.map(|end| end.off), &known)
+                + rounding * reach,
             directions: [0, 1].map(|end| pose.rotation * ends[end].direction),
             bend: 0.5 * known.curvature * long + tilt,
             reach,
@@ -340,14 +345,26 @@ impl<'a> CarriedMotion<'a> {
     }
 
     /// Bounds the speeds of a piece relative to its own frame and to another one (claims 1 and 2).
-    /// `stated` is the stated speed of the piece.
+    /// `stated` is the stated speed of the piece. Two frames that do not turn need no `piece`.
     pub(crate) fn speeds(
         &self,
         stated: Speed,
-        piece: &CarriedPiece,
+        piece: impl FnOnce() -> CarriedPiece,
         other: &CommonFrame,
     ) -> CarriedSpeed {
         let (frame, half) = (self.frame(), self.half);
+        if frame.is_shift() && other.is_shift() {
+            let own = stated.point + frame.off;
+            let rounding = length(frame.velocity) + length(other.velocity);
+            let apart = length(frame.velocity - other.velocity)
+                + other.off
+                + 64.0 * Real::UNIT_ROUNDOFF * rounding;
+            return CarriedSpeed {
+                own: Speed { point: own * UP, turn: stated.turn * UP },
+                seen: Speed { point: (own + apart) * UP, turn: stated.turn * UP },
+            };
+        }
+        let piece = &piece();
         let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
         let away = piece.most(1.0, |point| point - frame.at);
         let twist = if frame.turn_off == 0.0 {
@@ -406,7 +423,7 @@ impl<'a> CarriedMotion<'a> {
         let Some(part) = tube.sections().get(section).filter(|_| self.has_frame()) else {
             return stated;
         };
-        let piece = CarriedPiece::new(tube, pose, part, shares);
-        self.speeds(stated, &piece, &CommonFrame::REST).seen
+        let piece = || CarriedPiece::new(tube, pose, part, shares);
+        self.speeds(stated, piece, &CommonFrame::REST).seen
     }
 }

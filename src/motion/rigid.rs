@@ -17,7 +17,7 @@
 //! `w T`. So the distance of p from the chord adds at most `w T` times itself.
 
 use super::{CommonFrame, DisplacementBound, Motion, Speed, rigid_pose};
-use crate::curve::{Section, Tube};
+use crate::curve::{CurveBound, Section, Tube};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, length, rotation_by};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
@@ -160,6 +160,17 @@ impl RigidPath {
     pub(super) fn beside(tube: &Tube, section: &Section, shares: [Real; 2]) -> Real {
         let off = shares.map(|share| tube.at_share(section, share).off);
         let known = tube.bound(section, tube.ticks_around(section, shares));
+        Self::beside_of(tube, section, shares, off, &known)
+    }
+
+    /// As [`beside`](Self::beside), from the errors of the ends and a bound on the piece.
+    pub(super) fn beside_of(
+        tube: &Tube,
+        section: &Section,
+        shares: [Real; 2],
+        off: [Real; 2],
+        known: &CurveBound,
+    ) -> Real {
         let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
         // The errors of the ends between samples, and of the curve.
         let beside = off[0].max(off[1]).max(known.off);

@@ -133,7 +133,7 @@ fn carried_speeds_hold_in_any_frame() {
             let beside =
                 CommonFrame::of_path(&RigidPath::new(other_poses(&other)).unwrap(), middle);
             for (kind, frame) in [CommonFrame::REST, beside].into_iter().enumerate() {
-                let speed = carried.speeds(stated, &piece, &frame).seen;
+                let speed = carried.speeds(stated, || piece, &frame).seen;
                 let step = 2.0 * half / 8.0;
                 for (k, share) in (0..8).flat_map(|k| shares.map(|share| (k, share))) {
                     let t = times[0] + step * Real::from(k);

@@ -55,9 +55,9 @@ impl SeenFrom {
             Self::Rest if motion.has_frame() => CommonFrame::REST,
             Self::Robot(other) if other != number => motions[other].frame(),
             _ if motion.is_exact() => return stated,
-            _ => return motion.speeds(stated, &piece(), &CommonFrame::REST).own,
+            _ => return motion.speeds(stated, piece, &CommonFrame::REST).own,
         };
-        motion.speeds(stated, &piece(), &frame).seen
+        motion.speeds(stated, piece, &frame).seen
     }
 }
 

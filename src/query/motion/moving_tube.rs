@@ -49,8 +49,9 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
         let mut with_shift = Real::INFINITY;
         if self.motion.has_frame() {
             let placed = &tube.tube;
-            let of = CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares);
-            let seen = |frame| self.motion.speeds(speed, &of, &frame).seen;
+            let of =
+                || CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares);
+            let seen = |frame| self.motion.speeds(speed, of, &frame).seen;
             if shift != Vector::ZERO {
                 with_shift = seen(CommonFrame::shifting(shift)).point;
             }

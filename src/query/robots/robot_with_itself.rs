@@ -69,7 +69,9 @@
 //! wider radius.
 //!
 //! # Algorithm
-//! 1. [`Descent`] searches the pairs with a turn of pi.
+//! 1. [`Descent`] searches the pairs with a turn of pi. From some pairs that do not count,
+//!    [`RobotWithItself::slide`] moves to neighbours as long as they are nearer. The last one
+//!    probably counts, and then it bounds the search.
 //! 2. [`OwnFaces`] searches all others. If [`MOST_REFUSED`] pairs of step 1 do not count, nothing
 //!    bounds that search. Then [`OwnFaces`] searches all pairs, since it knows where the robot
 //!    leads nearer.
@@ -101,6 +103,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 /// With more rejected pairs the nodes of [`OwnFaces`] are cheaper.
 const MOST_REFUSED: usize = 64;
+
+/// The most moves from a rejected pair.
+const MOST_MOVES: u32 = 64;
 
 /// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
@@ -166,8 +171,8 @@ impl TurnSums {
             // The cosine of the whole angle.
             let ahead = (cosine - sine) * (cosine + sine);
             let is_wide = 2.0 * wider * sine > length * cosine;
-            let is_thin = ahead > 0.0 && 4.0 * radius * sine * cosine <= length * ahead;
-            if is_wide && !is_thin || is_folded {
+            let is_thin = || ahead > 0.0 && 4.0 * radius * sine * cosine <= length * ahead;
+            if is_folded || is_wide && !is_thin() {
                 let angle = 2.0 * libm::atan2(sine, cosine);
                 return Err(ProximityError::JointTooSharp {
                     joint: joint + 1,
@@ -247,6 +252,11 @@ impl<'a> RobotWithItself<'a> {
                 return PairLimit::at(best.insert(found));
             }
             refused += 1;
+            if let Some(found) = self.slide(turns, found, refused)
+                && PairLimit::at_best(&best).admits(found.distance, found.links.map(|k| k as usize))
+            {
+                best = Some(found);
+            }
             if refused < MOST_REFUSED { PairLimit::at_best(&best) } else { PairLimit::NOTHING }
         });
         // Faces come last because they cost most: the bound so far prunes most of them.
@@ -269,6 +279,9 @@ impl<'a> RobotWithItself<'a> {
         descent.run([&self.robot; 2], PairLimit::of(margin), queried_from(turns), |found| {
             is_clear = !self.counts(found.links.map(|link| link as usize));
             refused += usize::from(is_clear);
+            if is_clear && let Some(found) = self.slide(turns, found, refused) {
+                is_clear = found.distance > margin;
+            }
             if is_clear && refused < MOST_REFUSED {
                 PairLimit::of(margin)
             } else {
@@ -285,6 +298,37 @@ impl<'a> RobotWithItself<'a> {
     fn counts(&self, links: [usize; 2]) -> bool {
         let [one, two] = links.map(|link| self.joined(link));
         one.counts_beside(&two, one.tolerance(&two))
+    }
+
+    /// Moves from a rejected pair to nearer ones, one link at a time. Returns the last pair if it
+    /// counts. Of the rejected pairs, only the first, second, fourth and so on are moved.
+    fn slide(
+        &self,
+        turns: &TurnSums,
+        mut nearest: RobotProximity,
+        refused: usize,
+    ) -> Option<RobotProximity> {
+        if !refused.is_power_of_two() {
+            return None;
+        }
+        for _ in 0..MOST_MOVES {
+            let [one, two] = nearest.links.map(|link| link as usize);
+            let neighbours =
+                [[one.wrapping_sub(1), two], [one + 1, two], [one, two - 1], [one, two + 1]];
+            let is_queried = |[one, two]: &[usize; 2]| {
+                *two < turns.queried_from.len()
+                    && turns.queried_from.get(*one).is_some_and(|from| from <= two)
+            };
+            let measured = neighbours.into_iter().filter(is_queried);
+            let next = measured
+                .map(|links| measure_pair([&self.robot; 2], links))
+                .min_by(|a, b| a.distance.total_cmp(&b.distance));
+            match next.filter(|next| next.distance < nearest.distance) {
+                Some(next) => nearest = next,
+                None => break,
+            }
+        }
+        self.counts(nearest.links.map(|link| link as usize)).then_some(nearest)
     }
 
     /// Returns a link with its neighbours.
