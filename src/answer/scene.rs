@@ -34,13 +34,15 @@ pub enum Between {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StructureProximity {
-    /// The structure's number, in the order in which structures were added.
+    /// The structure's number, in the order in which structures were added:
+    /// [`Scene::name`](crate::proximity::Scene::name).
     pub structure: u32,
     /// The robot's index among the given robots.
     pub robot: u32,
-    /// Its closest link, and the closest triangle of the structure.
+    /// Its closest link, and the closest triangle of the structure. In a solid structure the
+    /// distance is 0, and the robot's point nearest to the surface is the common point.
     pub nearest: LinkProximity,
-    /// Distance minus the structure's margin, if it has one.
+    /// Distance minus the margin between the two, if they have one.
     pub slack: Option<Real>,
 }
 
@@ -68,11 +70,13 @@ pub enum SceneError {
         /// What is wrong, and what to change.
         error: ProximityError,
     },
-    /// A robot is at fault.
-    #[error("robot {robot}: {error}")]
+    /// A robot is at fault, perhaps together with a structure.
+    #[error("robot {robot}{}: {error}", beside(.structure))]
     Robot {
         /// The robot's index among the given robots.
         robot: usize,
+        /// The name of the structure that was queried; `None` if the robot alone is at fault.
+        structure: Option<String>,
         /// What is wrong, and what to change.
         error: ProximityError,
     },
@@ -96,6 +100,27 @@ pub enum SceneError {
          `per_structure`"
     )]
     NoMargin,
+    /// Two structures would have the same name.
+    #[error("structure {structure} has the name `{name}` too; give each structure its own name")]
+    NameTaken {
+        /// The name that was given.
+        name: String,
+        /// The number of the structure that has it.
+        structure: usize,
+    },
+    /// The mesh of a solid structure bounds no volume.
+    #[error(
+        "structure `{name}` cannot be solid: its mesh has {open_edges} open edges and {unbalanced_edges} edges whose triangles \
+         face opposite ways; close the mesh and make all triangles face the same way, or do not make the structure solid"
+    )]
+    NotSolid {
+        /// The structure's name.
+        name: String,
+        /// The number of edges of its openings.
+        open_edges: usize,
+        /// [`SurfaceReport::unbalanced_edges`](super::SurfaceReport::unbalanced_edges).
+        unbalanced_edges: usize,
+    },
     /// There is no structure with this number.
     #[error(
         "there is no structure {structure} among {structures}; give the number that `add` returned"
@@ -106,6 +131,10 @@ pub enum SceneError {
         /// The number of structures.
         structures: usize,
     },
+}
+
+fn beside(structure: &Option<String>) -> String {
+    structure.as_ref().map_or_else(String::new, |name| format!(" beside structure `{name}`"))
 }
 
 impl SceneError {
@@ -119,6 +148,8 @@ impl SceneError {
             | Self::BetweenRobots(error)
             | Self::Query(error) => error.kind(),
             Self::NoMargin => "no_margin",
+            Self::NameTaken { .. } => "name_taken",
+            Self::NotSolid { .. } => "not_solid",
             Self::NoSuchStructure { .. } => "no_such_structure",
         }
     }

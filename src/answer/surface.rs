@@ -17,6 +17,9 @@ pub struct SurfaceReport {
     pub nonmanifold_edges: usize,
     /// The number of edges whose two triangles face opposite ways.
     pub misoriented_edges: usize,
+    /// The number of edges of two or more triangles where not as many triangles face one way as the
+    /// other.
+    pub unbalanced_edges: usize,
 }
 
 /// A group of boundary edges, connected by their corners. A boundary edge belongs to one triangle.
@@ -40,6 +43,13 @@ impl SurfaceReport {
     /// outside are then defined everywhere.
     pub fn is_sound(&self) -> bool {
         self.openings.is_empty() && self.nonmanifold_edges == 0 && self.misoriented_edges == 0
+    }
+
+    /// Returns whether the surface bounds a volume: its winding number is an integer everywhere off
+    /// the surface. It has no openings and no unbalanced edges. Two boxes that share an edge bound a
+    /// volume.
+    pub fn bounds_volume(&self) -> bool {
+        self.openings.is_empty() && self.unbalanced_edges == 0
     }
 
     /// Returns a line for each reason why inside and outside may be doubtful, without a full stop.

@@ -9,6 +9,7 @@ mod moving_robot;
 mod odometer;
 mod queries;
 mod scene_bounds;
+mod solid;
 mod structure;
 mod structure_end;
 mod tubes;

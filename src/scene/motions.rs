@@ -21,20 +21,20 @@
 use super::Scene;
 use super::least_slack::{BoundedSlack, LeastSlack};
 use super::moving_robot::{MovingRobot, MovingRobotMemory};
-use super::queries::{of_pair, of_robot, of_structure, pairs_apart};
+use super::queries::{beside, of_pair, of_robot, of_structure, pairs_apart};
 use super::structure::{Structure, place_witness};
 use super::structure_end::{MovingStructure, StructureEnd, seen_from};
 use crate::answer::{
-    MotionAnswer, MotionClearance, ProximityError, RobotMotionAnswer, RobotMotionClearance,
-    RobotsInContact, SceneError, SceneMotionAnswer, SceneMotionClearance, SceneMotionContact,
-    ScenePlace, UndecidedReason,
+    Clearance, MotionAnswer, MotionClearance, ProximityError, RobotMotionAnswer,
+    RobotMotionClearance, RobotsInContact, SceneError, SceneMotionAnswer, SceneMotionClearance,
+    SceneMotionContact, ScenePlace, ShapeInContact, Side, UndecidedReason,
 };
 use crate::curve::Tube;
 use crate::engine::SceneMotion;
 use crate::motion::Motion;
 use crate::query::check_not_negative;
 use crate::query::motion::{MAX_PAIRS_FOR_BOUNDS, MarginQuery, Sought};
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Pose, Real};
 
 impl Scene {
     /// Decides whether robots that move at the same time keep all margins, at every time from 0 to
@@ -144,6 +144,7 @@ impl Scene {
     /// - A pose is not finite, not rigid or out of range.
     /// - The number of vertices differs from that of the mesh, or one is not finite or out of
     ///   range. The message names the structure.
+    /// - The vertices open the mesh of a solid structure.
     pub fn clears_motion_while<M: Motion + ?Sized>(
         &mut self,
         ends: &[(usize, StructureEnd)],
@@ -223,6 +224,7 @@ impl Scene {
         tolerance: Real,
     ) -> Result<Option<SceneMotionClearance>, SceneError> {
         check_not_negative("tolerance", tolerance).map_err(SceneError::Query)?;
+        self.bounds()?;
         let least =
             self.with_moving_robots(motions, |scene, robots| scene.least_slack(robots, tolerance))?;
         let found = least.answer(tolerance);
@@ -244,14 +246,16 @@ impl Scene {
                 break;
             }
             let structure = &mut self.structures[number];
-            let Some(margin) = structure.margin else { continue };
+            let Some(margin) = structure.margin_from(robot) else { continue };
             let motion = robots[robot].in_mesh(structure);
             let frame = structure.frame().map(|size| (size, 1.0));
             let asked = SceneMotion { motion: &motion, frame, to: None };
-            let MotionClearance { lower, upper, uncertainty, t, section, witness, .. } = structure
+            let found = structure
                 .search
                 .ask_clearance_of_motion(asked, tolerance, least.limit(margin))
-                .map_err(of_robot(robot))?;
+                .and_then(|found| clearance_of_solid(found, &robots[robot], structure));
+            let MotionClearance { lower, upper, uncertainty, t, section, witness, .. } =
+                found.map_err(beside(structure, robot))?;
             let witness = structure.placed_witness(witness);
             let (structure, of) = (number as u32, robot as u32);
             let place = ScenePlace::Structure { structure, robot: of, section, witness };
@@ -298,11 +302,15 @@ impl Scene {
     ) -> Result<SceneMotionAnswer, SceneError> {
         self.check_has_margin()?;
         check_not_negative("resolution", resolution).map_err(SceneError::Query)?;
+        self.bounds()?;
         let mut moving = Vec::with_capacity(ends.len());
         for (number, end) in ends {
             let structure = &*self.structure(*number)?;
-            let end = MovingStructure::new(structure, end);
-            moving.push((*number, end.map_err(|error| of_structure(structure, error))?));
+            let moves = MovingStructure::new(structure, end);
+            moving.push((*number, moves.map_err(|error| of_structure(structure, error))?));
+            if let StructureEnd::Vertices(to) = end {
+                structure.check_solid_at(to)?;
+            }
         }
         self.with_moving_robots(motions, |scene, robots| {
             let mut found = Findings::new(sought);
@@ -364,20 +372,21 @@ impl Scene {
         // The others are beyond their margin.
         for (_, [number, robot]) in order.into_iter().take_while(|(slack, _)| *slack <= 0.0) {
             let structure = &mut self.structures[number];
-            let Some(margin) = structure.margin else { continue };
+            let Some(margin) = structure.margin_from(robot) else { continue };
             let wanted = MarginQuery { margin, resolution };
             let answer =
-                decide_structure(&robots[robot], structure, end_of(number), wanted, sought)
-                    .map(|answer| Finding {
-                        interval: answer.interval,
-                        reason: answer.reason,
-                        contact: answer.contact.map(|shape| SceneMotionContact::Structure {
-                            structure: number as u32,
-                            robot: robot as u32,
-                            shape,
-                        }),
-                    })
-                    .map_err(of_robot(robot));
+                decide_structure(&robots[robot], structure, end_of(number), wanted, sought);
+            let answer = decide_solid(answer, &robots[robot], structure)
+                .map(|answer| Finding {
+                    interval: answer.interval,
+                    reason: answer.reason,
+                    contact: answer.contact.map(|shape| SceneMotionContact::Structure {
+                        structure: number as u32,
+                        robot: robot as u32,
+                        shape,
+                    }),
+                })
+                .map_err(beside(structure, robot));
             if found.ends_with(answer) {
                 return;
             }
@@ -523,6 +532,62 @@ fn decide_structure(
         };
     }
     Ok(answer)
+}
+
+/// Returns the answer about a solid and a robot, given the answer about its surface. The structure
+/// is where it is at t = 0.
+fn decide_solid(
+    of_surface: Result<MotionAnswer, ProximityError>,
+    robot: &MovingRobot,
+    structure: &mut Structure,
+) -> Result<MotionAnswer, ProximityError> {
+    if !structure.is_solid {
+        return of_surface;
+    }
+    let is_apart = |answer: &MotionAnswer| answer.is_clear() || answer.interval[0] > 0.0;
+    let is_apart = of_surface.as_ref().is_ok_and(is_apart);
+    let (tube, pose) = at_start(robot, structure)?;
+    match structure.side_of_tube(&tube, &pose, is_apart) {
+        Side::Outside => of_surface,
+        Side::Undecided => Ok(match of_surface {
+            Ok(MotionAnswer { contact: Some(shape), .. }) => MotionAnswer::contact(0.0, shape),
+            _ => MotionAnswer::undecided(([0.0, 1.0], UndecidedReason::Near)),
+        }),
+        Side::Inside => {
+            let Clearance { section, witness, .. } = structure.clearance_inside(&tube, &pose)?;
+            let witness = structure.placed_witness(witness);
+            let shape = ShapeInContact { t: 0.0, upper: 0.0, section, witness };
+            Ok(MotionAnswer::contact(0.0, shape))
+        }
+    }
+}
+
+/// Returns the least clearance of a solid and a robot, given that of its surface.
+fn clearance_of_solid(
+    of_surface: MotionClearance,
+    robot: &MovingRobot,
+    structure: &mut Structure,
+) -> Result<MotionClearance, ProximityError> {
+    if !structure.is_solid {
+        return Ok(of_surface);
+    }
+    let (tube, pose) = at_start(robot, structure)?;
+    match structure.side_of_tube(&tube, &pose, of_surface.lower > 0.0) {
+        Side::Outside => Ok(of_surface),
+        Side::Undecided => Ok(MotionClearance { lower: 0.0, ..of_surface }),
+        Side::Inside => {
+            let Clearance { section, witness, .. } = structure.clearance_inside(&tube, &pose)?;
+            let [lower, upper, uncertainty, t] = [0.0; 4];
+            Ok(MotionClearance { lower, upper, uncertainty, t, section, witness, ..of_surface })
+        }
+    }
+}
+
+/// The shape of a robot at t = 0, and its pose in the mesh's frame.
+fn at_start(robot: &MovingRobot, structure: &Structure) -> Result<(Tube, Pose), ProximityError> {
+    let mut tube = Tube::empty();
+    let pose = robot.in_mesh(structure).shape(0.0, &mut tube)?;
+    Ok((tube, pose))
 }
 
 /// Attributes an error of two motions to the robot that causes it: of two that have the section,

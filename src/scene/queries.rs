@@ -1,13 +1,13 @@
 //! A scene of structures and robots, and the queries about all of them.
 //!
 //! # Definitions
-//! - d(k, i): the distance of robot i from structure k; m(k): the margin of structure k.
-//! - slack(k, i) = d(k, i) - m(k).
+//! - d(k, i): the distance of robot i from structure k; m(k, i): the margin between them.
+//! - slack(k, i) = d(k, i) - m(k, i).
 //! - `lower`: the lower bound on d(k, i) that [`DistanceCache`] keeps while robots move.
 //! - `box`: the lower bound on d(k, i) by the bounding boxes
 //!   ([`BoundingBox`](super::bounding_box::BoundingBox)).
-//! - `bound`: the distance beyond which d(k, i) cannot matter: m(k) for [`Scene::clears`], the best
-//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts_within`].
+//! - `bound`: the distance beyond which d(k, i) cannot matter: m(k, i) for [`Scene::clears`], the
+//!   best slack plus m(k, i) for [`Scene::tightest`], `reach` for [`Scene::contacts_within`].
 //!
 //! # Algorithm
 //! 1. **Begin** ([`Scene::begin`]). Place all robots, which finds their errors. Stop if every robot
@@ -15,12 +15,14 @@
 //! 2. **Seed.** Query the pair (k, i) that decided the last query: it violated a margin, or was
 //!    tightest.
 //! 3. **Gather** ([`Scene::gather`]). Skip the pairs with `lower > bound` or `box > bound`. Sort
-//!    the others: least `box - m(k)` first, or by number for contacts.
+//!    the others: least `box - m(k, i)` first, or by number for contacts.
 //! 4. **Query** the pairs in order. [`Scene::place_unless_clear`] skips a pair that is beyond
 //!    `bound`; where it pays, it queries `bound + look_ahead`, so that `lower` serves the next
-//!    queries. `clears` stops at the first violated margin, `tightest` once `box - m(k)` exceeds
-//!    the best slack.
-//! 5. **Robots.** If a margin between robots is set, query the pairs of robots that are not nested.
+//!    queries. `clears` stops at the first violated margin, `tightest` once `box - m(k, i)`
+//!    exceeds the best slack.
+//! 5. **Solids.** Steps 1 to 4 measure surfaces. A robot inside of a solid has the distance 0
+//!    ([`solid`](super::solid)).
+//! 6. **Robots.** If a margin between robots is set, query the pairs of robots that are not nested.
 //!    `clears` also queries each robot and itself, if that margin is set.
 //!
 //! # Correctness
@@ -35,10 +37,11 @@
 use super::distance_cache::DistanceCache;
 use super::moving_robot::MovingRobotMemory;
 use super::scene_bounds::SceneBounds;
+use super::solid::common_point;
 use super::structure::Structure;
 use crate::answer::{
-    Between, Contact, PlacementFault, ProximityError, SceneContact, SceneError, StructureProximity,
-    Tightest,
+    Between, Contact, LinkProximity, PlacementFault, ProximityError, SceneContact, SceneError,
+    StructureProximity, Tightest,
 };
 use crate::distance::{DoubleDouble, Scalar};
 use crate::engine::{BvhSearch, Engine, Proximity, RobotPair, SelfQuery};
@@ -55,7 +58,10 @@ use std::cmp::Ordering;
 /// the *slack* is the distance minus the margin. A robot may touch a structure without a margin,
 /// such as a target. [`per_structure`](Self::per_structure) and
 /// [`contacts_within`](Self::contacts_within) measure such a structure; the other queries ignore
-/// it.
+/// it. A single robot may have [another margin](Self::set_margin_between).
+///
+/// A mesh is a surface: a robot wholly inside of a box keeps a margin to it. If the structure is
+/// [solid](Self::set_solid), such a robot is in contact.
 ///
 /// Each query takes the robots with their poses in the scene's frame. If a [margin between
 /// robots](Self::set_robot_margin) is set, the queries also test each robot against the others.
@@ -131,17 +137,22 @@ impl Scene {
 
     /// Adds a structure and returns its number.
     ///
-    /// Structures count from 0 in the order in which they are added. Two may have the same name.
+    /// Structures count from 0 in the order in which they are added.
     ///
     /// # Errors
-    /// The margin is negative or NaN. The message names the structure.
+    /// Another structure has this name, or the margin is negative or NaN. The message names the
+    /// structure.
     pub fn add(
         &mut self,
         name: impl Into<String>,
         search: BvhSearch,
         margin: Option<Real>,
     ) -> Result<usize, SceneError> {
-        let structure = Structure::new(name.into(), search, margin);
+        let name = name.into();
+        if let Some(structure) = self.structures.iter().position(|it| it.name == name) {
+            return Err(SceneError::NameTaken { name, structure });
+        }
+        let structure = Structure::new(name, search, margin);
         check(margin).map_err(|error| of_structure(&structure, error))?;
         self.structures.push(structure);
         self.all = None;
@@ -168,7 +179,52 @@ impl Scene {
         self.structures.get(structure)?.margin
     }
 
-    /// Sets or removes the margin of a structure.
+    /// Returns whether a structure is solid; false if there is no such structure.
+    pub fn is_solid(&self, structure: usize) -> bool {
+        self.structures.get(structure).is_some_and(|structure| structure.is_solid)
+    }
+
+    /// Makes a structure solid, or a surface again, as it is by default.
+    ///
+    /// A robot inside of a solid structure is in contact with it: the distance is 0, and the
+    /// robot's point nearest to the surface is the common point. All queries but
+    /// [`contacts_within`](Self::contacts_within) count that. The triangles may face inwards or
+    /// outwards. A closed surface within another one bounds a cavity if it faces the other way. A
+    /// robot in a cavity is outside.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Cuboid};
+    /// use parry_continuum::proximity::{BvhSearch, Scene};
+    ///
+    /// let (vertices, triangles) = Cuboid::new(Vector::splat(10.0)).to_trimesh();
+    /// let mut scene = Scene::new();
+    /// let search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let table = scene.add("table", search, Some(1.0))?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
+    /// assert!(scene.clears(&[(&robot, Pose::IDENTITY)])?);
+    /// scene.set_solid(table, true)?;
+    /// assert!(!scene.clears(&[(&robot, Pose::IDENTITY)])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - There is no such structure.
+    /// - The mesh bounds no volume
+    ///   ([`SurfaceReport::bounds_volume`](crate::proximity::SurfaceReport::bounds_volume)). Then
+    ///   the structure stays a surface. If [`set_vertices`](Self::set_vertices) opens the mesh of a
+    ///   solid structure, the next query is this error.
+    pub fn set_solid(&mut self, structure: usize, is_solid: bool) -> Result<(), SceneError> {
+        let structure = self.structure(structure)?;
+        structure.is_solid = is_solid;
+        let checked = structure.check_solid();
+        structure.is_solid &= checked.is_ok();
+        self.all = None;
+        checked
+    }
+
+    /// Sets or removes the margin of a structure. [Margins from single
+    /// robots](Self::set_margin_between) stay.
     ///
     /// # Errors
     /// There is no such structure, or the margin is negative or NaN.
@@ -176,6 +232,49 @@ impl Scene {
         let structure = self.structure(structure)?;
         check(margin).map_err(|error| of_structure(structure, error))?;
         structure.margin = margin;
+        self.all = None;
+        Ok(())
+    }
+
+    /// The margin between a structure and a robot. `None` if the two may touch, or if there is no
+    /// such structure.
+    pub fn margin_between(&self, structure: usize, robot: usize) -> Option<Real> {
+        self.structures.get(structure)?.margin_from(robot)
+    }
+
+    /// Sets the margin between a structure and one robot, in place of the structure's margin. With
+    /// `None` the two may touch.
+    ///
+    /// `robot` is the index of a robot in a query; without such a robot the margin has no effect.
+    ///
+    /// ```
+    /// use parry_continuum::Chain;
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Scene};
+    ///
+    /// let (vertices, triangles) = Ball::new(1.0).to_trimesh(32, 16);
+    /// let mut scene = Scene::new();
+    /// let target =
+    ///     scene.add("target", BvhSearch::from_triangles(&vertices, &triangles)?, Some(5.0))?;
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 9.0], &[0.5])?;
+    /// let [needle, probe] = [0.0, 8.0].map(|x| (&robot, Pose::translation(x, 0.0, 0.0)));
+    /// assert!(!scene.clears(&[needle, probe])?);
+    /// scene.set_margin_between(target, 0, None)?; // the needle may touch the target
+    /// assert!(scene.clears(&[needle, probe])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// There is no such structure, or the margin is negative or NaN.
+    pub fn set_margin_between(
+        &mut self,
+        structure: usize,
+        robot: usize,
+        margin: Option<Real>,
+    ) -> Result<(), SceneError> {
+        let structure = self.structure(structure)?;
+        check(margin).map_err(|error| of_structure(structure, error))?;
+        structure.set_margin_from(robot, margin);
         self.all = None;
         Ok(())
     }
@@ -212,7 +311,7 @@ impl Scene {
     }
 
     /// Sets the margin between robots. With `None`, the default, robots are not tested against one
-    /// another.
+    /// another: several robots may pass through each other.
     ///
     /// # Errors
     /// The margin is negative or NaN.
@@ -258,6 +357,7 @@ impl Scene {
     /// - Neither a structure nor the robots have a margin.
     /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
     ///   robot's number.
+    /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
     /// - A margin of robots to themselves is set, and a joint is too sharp for
     ///   [`SelfQuery::clears`].
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
@@ -286,9 +386,8 @@ impl Scene {
     /// # Errors
     /// Nothing has a margin.
     pub(super) fn check_has_margin(&self) -> Result<(), SceneError> {
-        let has_margin = |structure: &Structure| structure.margin.is_some();
         let is_robot_tested = self.robot_margin.is_some() || self.self_margin.is_some();
-        if is_robot_tested || self.structures.iter().any(has_margin) {
+        if is_robot_tested || self.structures.iter().any(Structure::has_margin) {
             Ok(())
         } else {
             Err(SceneError::NoMargin)
@@ -303,7 +402,9 @@ impl Scene {
         }
         self.met = None;
         let mut order = std::mem::take(&mut self.order);
-        let near = |structure: &Structure| structure.margin.map(|margin| (margin, margin));
+        let near = |structure: &Structure, robot: usize| {
+            structure.margin_from(robot).map(|margin| (margin, margin))
+        };
         let asked = self.gather(robots, near, &mut order).and_then(|()| {
             order.sort_unstable_by(nearest_first);
             for &(_, [structure, robot]) in &order {
@@ -315,7 +416,37 @@ impl Scene {
             Ok(())
         });
         self.order = order;
-        asked.map(|()| self.met.is_none())
+        asked?;
+        if self.met.is_some() {
+            return Ok(false);
+        }
+        for (number, structure) in self.structures.iter().enumerate() {
+            for robot in 0..if structure.is_solid { robots.len() } else { 0 } {
+                if structure.margin_from(robot).is_some()
+                    && self.is_inside(number, robot, robots)?
+                {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// Returns whether a robot that does not touch a structure's surface is inside, if the
+    /// structure is solid.
+    fn is_inside(
+        &self,
+        structure: usize,
+        robot: usize,
+        robots: &[(&Chain, Pose)],
+    ) -> Result<bool, SceneError> {
+        let structure = &self.structures[structure];
+        if !structure.is_solid {
+            return Ok(false);
+        }
+        let (chain, pose) = robots[robot];
+        let placed = PlacedRobot::new(chain, &structure.in_mesh(&pose));
+        Ok(structure.contains(&placed.map_err(beside(structure, robot))?))
     }
 
     /// Returns the least slack and the pair that has it, or `None` if there is no robot or no
@@ -325,8 +456,9 @@ impl Scene {
     /// robot; pairs of robots come last.
     ///
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
-    /// number.
+    /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
+    ///   robot's number.
+    /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
         self.begin(robots, Some(Real::INFINITY))?;
         let mut best: Best = None;
@@ -336,8 +468,9 @@ impl Scene {
         // Step 3. The pair with the least lower bound is first, because its slack excludes the most
         // others.
         let mut order = std::mem::take(&mut self.order);
-        let near =
-            |structure: &Structure| structure.margin.map(|margin| (margin, beyond(&best, margin)));
+        let near = |structure: &Structure, robot: usize| {
+            structure.margin_from(robot).map(|margin| (margin, beyond(&best, margin)))
+        };
         let asked = self.gather(robots, near, &mut order).and_then(|()| {
             order.sort_unstable_by(nearest_first);
             for &(room, [structure, robot]) in &order {
@@ -350,6 +483,11 @@ impl Scene {
         });
         self.order = order;
         asked?;
+        for number in 0..self.structures.len() {
+            for robot in 0..if self.structures[number].is_solid { robots.len() } else { 0 } {
+                self.offer_inside(number, robot, robots, &mut best)?;
+            }
+        }
         self.tightest = match best.as_ref().map(|(_, best)| best.between) {
             Some(Between::Structure(near)) => Some([near.structure as usize, near.robot as usize]),
             _ => None,
@@ -370,7 +508,9 @@ impl Scene {
 
     /// Finds the closest robot of each structure, in order, with or without a margin.
     ///
-    /// `out` is cleared first, and stays empty if no robot is given.
+    /// If the robots have different margins from the structure, the one with the least slack is
+    /// found. Robots that may touch the structure then come last. `out` is cleared first, and stays
+    /// empty if no robot is given.
     ///
     /// # Errors
     /// As [`tightest`](Self::tightest).
@@ -384,27 +524,53 @@ impl Scene {
         for (robot, (chain, pose)) in robots.iter().enumerate() {
             PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
         }
+        self.bounds()?;
         for (number, structure) in self.structures.iter_mut().enumerate() {
-            let mut best: Option<StructureProximity> = None;
+            let has_margin = (0..robots.len()).any(|robot| structure.margin_from(robot).is_some());
+            let mut best: Option<(DoubleDouble, StructureProximity)> = None;
             for (robot, (chain, pose)) in robots.iter().enumerate() {
+                let margin = structure.margin_from(robot);
+                if has_margin && margin.is_none() {
+                    continue;
+                }
                 let pose = structure.in_mesh(pose);
-                let bound = best.map_or(Real::INFINITY, |best| best.nearest.distance);
-                let found = structure
-                    .search
-                    .minimum_within(chain, &pose, bound)
-                    .map_err(of_robot(robot))?;
-                if let Some(found) = found
-                    && best.is_none_or(|best| found.distance < best.nearest.distance)
-                {
-                    best = Some(StructureProximity {
+                let bound = best.as_ref().map_or(Real::INFINITY, |(least, best)| {
+                    if structure.margin_from(best.robot as usize) == margin {
+                        return best.nearest.distance;
+                    }
+                    // Not a number if both are infinite.
+                    let bound = (least.rounded().next_up() + margin.unwrap_or(0.0)).next_up();
+                    if bound.is_nan() { Real::INFINITY } else { bound }
+                });
+                if bound < 0.0 {
+                    continue;
+                }
+                let found = structure.search.minimum_within(chain, &pose, bound);
+                let mut found = found.map_err(beside(structure, robot))?;
+                if structure.is_solid {
+                    let placed = PlacedRobot::new(chain, &pose);
+                    if structure.contains(&placed.map_err(beside(structure, robot))?) {
+                        let nearest = structure.search.minimum(chain, &pose);
+                        found = Some(inside(nearest.map_err(beside(structure, robot))?));
+                    }
+                }
+                let Some(found) = found else { continue };
+                let slack = slack(found.distance, margin.unwrap_or(0.0));
+                let is_tighter = best.as_ref().is_none_or(|(least, best)| {
+                    let is_closer = found.distance < best.nearest.distance;
+                    slack.lt(*least) || (slack.le(*least) && is_closer)
+                });
+                if is_tighter {
+                    let near = StructureProximity {
                         structure: number as u32,
                         robot: robot as u32,
                         nearest: structure.placed(found),
-                        slack: structure.margin.map(|margin| found.distance - margin),
-                    });
+                        slack: margin.map(|margin| found.distance - margin),
+                    };
+                    best = Some((slack, near));
                 }
             }
-            out.extend(best);
+            out.extend(best.map(|(_, best)| best));
         }
         Ok(())
     }
@@ -430,7 +596,7 @@ impl Scene {
             return Ok(());
         }
         let mut order = std::mem::take(&mut self.order);
-        let asked = self.gather(robots, |_| Some((0.0, reach)), &mut order).and_then(|()| {
+        let asked = self.gather(robots, |_, _| Some((0.0, reach)), &mut order).and_then(|()| {
             order.sort_unstable_by_key(|(_, who)| *who);
             for &(_, [number, robot]) in &order {
                 let Some(placed) = self.place_unless_clear(number, robot, robots, reach)? else {
@@ -441,7 +607,7 @@ impl Scene {
                 structure
                     .search
                     .ask_contacts(placed, asked, &mut self.contacts)
-                    .map_err(of_robot(robot))?;
+                    .map_err(beside(structure, robot))?;
                 if !self.contacts.is_empty() {
                     self.watches[robot].mark_near(number);
                 }
@@ -469,8 +635,8 @@ impl Scene {
             .ok_or(SceneError::NoSuchStructure { structure, structures })
     }
 
-    /// The pairs (structure, robot) whose structure has a margin, with a lower bound on the slack:
-    /// the least first. `at_least` bounds the distance of a structure, with its number, from a
+    /// The pairs (structure, robot) that have a margin, with a lower bound on the slack: the least
+    /// first. `at_least` bounds the distance of a structure, with its number, from a
     /// robot.
     pub(super) fn by_slack(
         &self,
@@ -479,11 +645,11 @@ impl Scene {
     ) -> Vec<(Real, [usize; 2])> {
         let mut order = Vec::new();
         for (number, structure) in self.structures.iter().enumerate() {
-            let Some(margin) = structure.margin else { continue };
-            order.extend((0..robots).map(|robot| {
+            order.extend((0..robots).filter_map(|robot| {
+                let margin = structure.margin_from(robot)?;
                 let slack = (at_least(number, structure, robot) - margin).next_down();
                 // An infinite margin and an infinite bound.
-                (if slack.is_nan() { Real::NEG_INFINITY } else { slack }, [number, robot])
+                Some((if slack.is_nan() { Real::NEG_INFINITY } else { slack }, [number, robot]))
             }));
         }
         order.sort_unstable_by(nearest_first);
@@ -500,6 +666,18 @@ impl Scene {
         self.all = None;
     }
 
+    /// The bounds of all structures.
+    ///
+    /// # Errors
+    /// The mesh of a solid structure is open, since its vertices have moved.
+    pub(super) fn bounds(&mut self) -> Result<SceneBounds, SceneError> {
+        if let Some(all) = self.all {
+            return Ok(all);
+        }
+        self.structures.iter().filter(|it| it.is_solid).try_for_each(Structure::check_solid)?;
+        Ok(*self.all.insert(SceneBounds::of(&self.structures)))
+    }
+
     /// Step 1. Returns false if all robots are farther than `bound` from all structures; without a
     /// bound, farther than the largest margin.
     ///
@@ -509,7 +687,7 @@ impl Scene {
         robots: &[(&Chain, Pose)],
         bound: Option<Real>,
     ) -> Result<bool, SceneError> {
-        let all = *self.all.get_or_insert_with(|| SceneBounds::of(&self.structures));
+        let all = self.bounds()?;
         let (mut may_be_near, bound) = (false, bound.unwrap_or(all.margin));
         for (robot, (chain, pose)) in robots.iter().enumerate() {
             let placed = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
@@ -535,12 +713,13 @@ impl Scene {
         robot: usize,
         robots: &[(&Chain, Pose)],
     ) -> Result<bool, SceneError> {
-        let Some(margin) = self.structures[number].margin else { return Ok(true) };
+        let Some(margin) = self.structures[number].margin_from(robot) else { return Ok(true) };
         let Some(placed) = self.place_unless_clear(number, robot, robots, margin)? else {
             return Ok(true);
         };
+        let structure = &mut self.structures[number];
         let clears =
-            self.structures[number].search.ask_clears(placed, margin).map_err(of_robot(robot))?;
+            structure.search.ask_clears(placed, margin).map_err(beside(structure, robot))?;
         if !clears {
             self.watches[robot].mark_near(number);
         }
@@ -563,7 +742,8 @@ impl Scene {
             return Ok(None);
         }
         let (chain, pose) = robots[robot];
-        let placed = PlacedRobot::new(chain, &structure.in_mesh(&pose)).map_err(of_robot(robot))?;
+        let placed = PlacedRobot::new(chain, &structure.in_mesh(&pose));
+        let placed = placed.map_err(beside(structure, robot))?;
         if bound == Real::INFINITY {
             return Ok(Some(placed));
         }
@@ -584,23 +764,24 @@ impl Scene {
     /// Step 3: writes to `order` the pairs that may be within their bound, with a lower bound on
     /// the slack.
     ///
-    /// `asked` returns the margin and the bound of a structure, or `None` if the query ignores the
-    /// structure. Each robot is placed once for all structures whose frame is the scene's.
+    /// `asked` returns the margin and the bound of a structure and a robot, or `None` if the query
+    /// ignores the two. Each robot is placed once for all structures whose frame is the scene's.
     fn gather(
         &mut self,
         robots: &[(&Chain, Pose)],
-        asked: impl Fn(&Structure) -> Option<(Real, Real)>,
+        asked: impl Fn(&Structure, usize) -> Option<(Real, Real)>,
         order: &mut Vec<(Real, [usize; 2])>,
     ) -> Result<(), SceneError> {
         order.clear();
         for (robot, ((chain, pose), watch)) in robots.iter().zip(&mut self.watches).enumerate() {
             let in_scene = PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
             for (number, structure) in self.structures.iter().enumerate() {
-                let Some((margin, bound)) = asked(structure) else { continue };
+                let Some((margin, bound)) = asked(structure, robot) else { continue };
                 if watch.lower_bound(number, structure.size()) > bound {
                     continue;
                 }
-                let placed = structure.place(chain, pose, &in_scene).map_err(of_robot(robot))?;
+                let placed = structure.place(chain, pose, &in_scene);
+                let placed = placed.map_err(beside(structure, robot))?;
                 let at_least = structure.around.at_least(&placed);
                 if at_least > bound {
                     watch.record(number, at_least, structure.size());
@@ -620,7 +801,7 @@ impl Scene {
         robots: &[(&Chain, Pose)],
         best: &mut Best,
     ) -> Result<(), SceneError> {
-        let Some(margin) = self.structures[number].margin else { return Ok(()) };
+        let Some(margin) = self.structures[number].margin_from(robot) else { return Ok(()) };
         let bound = beyond(best, margin);
         if bound < 0.0 {
             return Ok(());
@@ -630,12 +811,44 @@ impl Scene {
         };
         let (structure, watch) = (&mut self.structures[number], &mut self.watches[robot]);
         let far = bound + watch.look_ahead().unwrap_or(0.0);
-        let found = structure.search.ask_nearest(placed, far).map_err(of_robot(robot))?;
+        let found = structure.search.ask_nearest(placed, far).map_err(beside(structure, robot))?;
         watch.record(number, found.map_or(far, |found| found.distance), structure.size());
         let Some(found) = found else { return Ok(()) };
         if found.distance <= bound {
             watch.mark_near(number);
         }
+        self.keep([number, robot], found, margin, best);
+        Ok(())
+    }
+
+    /// Step 5 of `tightest`: offers a robot that is inside of a solid.
+    fn offer_inside(
+        &mut self,
+        number: usize,
+        robot: usize,
+        robots: &[(&Chain, Pose)],
+        best: &mut Best,
+    ) -> Result<(), SceneError> {
+        let Some(margin) = self.structures[number].margin_from(robot) else { return Ok(()) };
+        if beyond(best, margin) < 0.0 || !self.is_inside(number, robot, robots)? {
+            return Ok(());
+        }
+        let structure = &mut self.structures[number];
+        let (chain, pose) = robots[robot];
+        let nearest = structure.search.minimum(chain, &structure.in_mesh(&pose));
+        let nearest = nearest.map_err(beside(structure, robot))?;
+        self.keep([number, robot], inside(nearest), margin, best);
+        Ok(())
+    }
+
+    /// Keeps a pair if it is tighter than the best.
+    fn keep(
+        &self,
+        [number, robot]: [usize; 2],
+        found: LinkProximity,
+        margin: Real,
+        best: &mut Best,
+    ) {
         let slack = slack(found.distance, margin);
         let is_tighter = best.as_ref().is_none_or(|(least, best)| {
             let comes_first = match best.between {
@@ -651,12 +864,11 @@ impl Scene {
             let near = StructureProximity {
                 structure: number as u32,
                 robot: robot as u32,
-                nearest: structure.placed(found),
+                nearest: self.structures[number].placed(found),
                 slack: Some(rounded),
             };
             *best = Some((slack, Tightest { slack: rounded, between: Between::Structure(near) }));
         }
-        Ok(())
     }
 }
 
@@ -683,7 +895,17 @@ pub(super) fn of_structure(structure: &Structure, error: ProximityError) -> Scen
 }
 
 pub(super) fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
-    move |error| SceneError::Robot { robot, error }
+    move |error| SceneError::Robot { robot, structure: None, error }
+}
+
+/// Attributes an error to a robot and the structure that was queried.
+pub(super) fn beside(structure: &Structure, robot: usize) -> impl Fn(ProximityError) -> SceneError {
+    move |error| SceneError::Robot { robot, structure: Some(structure.name.clone()), error }
+}
+
+/// The proximity of a robot inside of a solid, given that to its surface.
+fn inside(nearest: LinkProximity) -> LinkProximity {
+    LinkProximity { distance: 0.0, witness: common_point(nearest.witness), ..nearest }
 }
 
 /// Attributes an error of a query about two robots to the robot that causes it, or to both. The

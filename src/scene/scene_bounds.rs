@@ -30,7 +30,7 @@ impl SceneBounds {
         structures.iter().fold(Self::default(), |all, structure| Self {
             around: all.around.and(structure.around_in_scene()),
             size: all.size.max(structure.size()),
-            margin: all.margin.max(structure.margin.unwrap_or(Real::NEG_INFINITY)),
+            margin: all.margin.max(structure.largest_margin()),
         })
     }
 

@@ -11,6 +11,10 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) struct Structure {
     pub name: String,
     pub margin: Option<Real>,
+    /// The margins from single robots that differ from `margin`, each with the robot's number.
+    margins_between: Vec<(usize, Option<Real>)>,
+    /// Whether a robot inside is in contact.
+    pub is_solid: bool,
     /// Boxed, so that the fields that reject a far robot lie close together in memory for all
     /// structures.
     pub search: Box<BvhSearch>,
@@ -25,10 +29,45 @@ pub(super) struct Structure {
 impl Structure {
     pub fn new(name: String, search: BvhSearch, margin: Option<Real>) -> Self {
         let search = Box::new(search);
-        let mut new =
-            Self { name, margin, search, pose: None, around: BoundingBox::default(), size: 0.0 };
+        let mut new = Self {
+            name,
+            margin,
+            margins_between: Vec::new(),
+            is_solid: false,
+            search,
+            pose: None,
+            around: BoundingBox::default(),
+            size: 0.0,
+        };
         new.update_bounds();
         new
+    }
+
+    /// The margin from a robot.
+    pub fn margin_from(&self, robot: usize) -> Option<Real> {
+        let mut margins = self.margins_between.iter();
+        margins.find(|(other, _)| *other == robot).map_or(self.margin, |(_, margin)| *margin)
+    }
+
+    /// Sets the margin from one robot.
+    pub fn set_margin_from(&mut self, robot: usize, margin: Option<Real>) {
+        self.margins_between.retain(|(other, _)| *other != robot);
+        self.margins_between.push((robot, margin));
+    }
+
+    fn margins(&self) -> impl Iterator<Item = Real> {
+        let between = self.margins_between.iter().map(|(_, margin)| *margin);
+        std::iter::once(self.margin).chain(between).flatten()
+    }
+
+    /// Whether some robot has a margin.
+    pub fn has_margin(&self) -> bool {
+        self.margins().next().is_some()
+    }
+
+    /// The largest margin, or -infinity.
+    pub fn largest_margin(&self) -> Real {
+        self.margins().fold(Real::NEG_INFINITY, Real::max)
     }
 
     fn update_bounds(&mut self) {

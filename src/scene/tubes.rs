@@ -3,7 +3,7 @@
 use super::Scene;
 use super::least_slack::{BoundedSlack, LeastSlack};
 use super::moving_robot::RestingTube;
-use super::queries::{of_pair, of_robot, pairs_apart};
+use super::queries::{beside, of_pair, of_robot, pairs_apart};
 use crate::answer::{Clearance, Decision, RobotClearance, SceneClearance, SceneError, ScenePlace};
 use crate::curve::Tube;
 use crate::query::check_not_negative;
@@ -49,6 +49,7 @@ impl Scene {
     /// - The resolution is negative or NaN.
     /// - A pose is not finite or not rigid, or moves its tube out of range. The message has the
     ///   robot's number.
+    /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
     /// - The robots have a margin to themselves, and a tube bends within its radius.
     /// - Samples do not allow a decision at that resolution, or a curve is not finite somewhere.
     pub fn clears_tube(
@@ -58,18 +59,20 @@ impl Scene {
     ) -> Result<Decision, SceneError> {
         self.check_has_margin()?;
         check_not_negative("resolution", resolution).map_err(SceneError::Query)?;
+        self.bounds()?;
         let resting = resting(tubes)?;
         let mut found = Decisions::default();
         for structure in &mut self.structures {
-            let Some(margin) = structure.margin else { continue };
             for (robot, (tube, pose)) in tubes.iter().enumerate() {
+                let Some(margin) = structure.margin_from(robot) else { continue };
                 if resting[robot].at_least(structure) > margin {
                     continue;
                 }
                 let (pose, frame) = (structure.in_mesh(pose), structure.frame());
                 let wanted = MarginQuery { margin, resolution };
                 let answer = structure.search.ask_clears_tube(tube, &pose, wanted, frame);
-                if found.ends_with(answer.map_err(of_robot(robot))) {
+                let answer = structure.decide_tube(answer, tube, &pose);
+                if found.ends_with(answer.map_err(beside(structure, robot))) {
                     return Ok(Decision::Contact);
                 }
             }
@@ -124,6 +127,7 @@ impl Scene {
     /// - The tolerance is negative or NaN.
     /// - A pose is not finite or not rigid, or moves its tube out of range. The message has the
     ///   robot's number.
+    /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
     /// - A curve is not finite somewhere.
     pub fn clearance(
         &mut self,
@@ -131,6 +135,7 @@ impl Scene {
         tolerance: Real,
     ) -> Result<Option<SceneClearance>, SceneError> {
         check_not_negative("tolerance", tolerance).map_err(SceneError::Query)?;
+        self.bounds()?;
         let resting = resting(tubes)?;
         let mut least = LeastSlack::new();
         for (bound, [number, robot]) in
@@ -140,12 +145,15 @@ impl Scene {
                 break;
             }
             let structure = &mut self.structures[number];
-            let Some(margin) = structure.margin else { continue };
+            let Some(margin) = structure.margin_from(robot) else { continue };
             let (tube, pose) = &tubes[robot];
             let (pose, frame) = (structure.in_mesh(pose), structure.frame());
-            let found = structure.search.ask_clearance(tube, &pose, tolerance, frame);
+            let found = structure
+                .search
+                .ask_clearance(tube, &pose, tolerance, frame)
+                .and_then(|found| structure.clearance_of_tube(found, tube, &pose));
             let Clearance { lower, upper, uncertainty, section, witness, .. } =
-                found.map_err(of_robot(robot))?;
+                found.map_err(beside(structure, robot))?;
             let witness = structure.placed_witness(witness);
             let (structure, of) = (number as u32, robot as u32);
             let place = ScenePlace::Structure { structure, robot: of, section, witness };

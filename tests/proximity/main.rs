@@ -39,6 +39,7 @@ mod scene_motions;
 mod scenes;
 mod seams;
 mod side;
+mod solid;
 mod structures;
 mod surface;
 mod thin_links;

@@ -400,7 +400,7 @@ fn tubes_in_a_scene_are_decided_as_by_the_single_questions() {
     assert_eq!(scene.clears_tube(&[at(0.0), at(1.0)], RESOLUTION), Ok(Decision::Clear));
     assert_eq!(
         scene.clears_tube(&[at(0.0), at(Real::NAN)], RESOLUTION),
-        Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite })
+        Err(SceneError::Robot { robot: 1, structure: None, error: ProximityError::PoseNotFinite })
     );
     assert_eq!(scene.clears_tube(&[], -1.0).map_err(|error| error.kind()), Err("negative"));
 }
@@ -579,14 +579,14 @@ fn an_error_names_the_robot() {
     scene.set_self_margin(Some(0.1)).unwrap();
     assert!(matches!(
         ask(&mut scene, &[&fine, &sharp], RESOLUTION),
-        Err(SceneError::Robot { robot: 1, error: ProximityError::JointTooSharp { .. } })
+        Err(SceneError::Robot { robot: 1, error: ProximityError::JointTooSharp { .. }, .. })
     ));
     // The chains of that robot have the same error.
     let points = [Vector::X * 9.0, Vector::new(9.0, 0.0, 1.0), Vector::new(9.0, 0.1, 0.0)];
     let chain = Chain::from_centreline(&points, &[0.3; 2]).unwrap();
     assert!(matches!(
         scene.clears(&[(&chain, Pose::IDENTITY)]),
-        Err(SceneError::Robot { robot: 0, error: ProximityError::JointTooSharp { .. } })
+        Err(SceneError::Robot { robot: 0, error: ProximityError::JointTooSharp { .. }, .. })
     ));
 
     /// Has two links at first, then three.
@@ -607,7 +607,8 @@ fn an_error_names_the_robot() {
     scene.set_self_margin(None).unwrap();
     scene.set_robot_margin(Some(0.5)).unwrap();
     let changes = ask(&mut scene, &[&fine, &Changes], RESOLUTION);
-    let Err(SceneError::Robot { robot: 1, error: ProximityError::Motion(fault) }) = changes else {
+    let Err(SceneError::Robot { robot: 1, error: ProximityError::Motion(fault), .. }) = changes
+    else {
         panic!("{changes:?}")
     };
     assert!(matches!(fault, RobotError::SectionsChange { .. }));
@@ -632,8 +633,9 @@ fn an_error_names_the_robot() {
     let (short, long) = (Sections(1, 0.0), Sections(3, 1e12));
     for (robots, faster) in [([&short, &long], 1), ([&long, &short], 0)] {
         let too_fast = ask(&mut scene, &robots.map(|robot| robot as &dyn Motion), 1e-9);
-        let Err(SceneError::Robot { robot, error: ProximityError::TooFast { section, .. } }) =
-            too_fast
+        let Err(SceneError::Robot {
+            robot, error: ProximityError::TooFast { section, .. }, ..
+        }) = too_fast
         else {
             panic!("{too_fast:?}")
         };

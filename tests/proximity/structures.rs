@@ -127,8 +127,8 @@ fn of_equal_slacks_the_lowest_structure_counts() {
     let robots = [(&robot, Pose::IDENTITY)];
     let at = |x: f64| ball(Vector::X * x, 1.0);
     let mut scene = Scene::new();
-    for x in [9.0, 4.0, -4.0, 4.0] {
-        scene.add("organ", at(x), Some(1.0)).unwrap();
+    for (number, x) in [9.0, 4.0, -4.0, 4.0].into_iter().enumerate() {
+        scene.add(format!("organ {number}"), at(x), Some(1.0)).unwrap();
     }
     let structure =
         |scene: &mut Scene| match scene.tightest(&robots).unwrap().map(|found| found.between) {
@@ -239,7 +239,7 @@ fn bad_lengths_are_refused_under_their_own_names() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     let robots = [(&robot, Pose::IDENTITY)];
     let mut scene = Scene::new();
-    for _ in 0..2 {
+    for structures in 0..2 {
         for (reach, prominence, name) in
             [(-1.0, 0.0, "reach"), (f64::NAN, 0.0, "reach"), (1.0, -1.0, "prominence")]
         {
@@ -249,7 +249,7 @@ fn bad_lengths_are_refused_under_their_own_names() {
             assert!(refused.to_string().starts_with(&format!("`{name}` is ")), "{refused}");
         }
         scene.contacts_within(&robots, 1.0, 0.0, &mut Vec::new()).unwrap();
-        scene.add("wall", ball(Vector::X * 5.0, 1.0), None).unwrap();
+        scene.add(format!("{structures}"), ball(Vector::X * 5.0, 1.0), None).unwrap();
     }
 }
 
@@ -290,7 +290,7 @@ fn a_bad_reach_is_an_error_in_every_scene() {
             assert!(error.to_string().contains("`reach`"), "{error}");
         }
         assert_eq!(scene.contacts_within(&robots, 0.0, 0.0, &mut Vec::new()), Ok(()));
-        scene.add("liver", ball(Vector::ZERO, 1.0), None).unwrap();
+        scene.add(format!("{structures}"), ball(Vector::ZERO, 1.0), None).unwrap();
     }
 }
 
@@ -384,7 +384,7 @@ fn many_sets_have_the_answers_of_each() {
     }
     assert_eq!(
         clears[20],
-        Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite })
+        Err(SceneError::Robot { robot: 1, structure: None, error: ProximityError::PoseNotFinite })
     );
     let count = |clear: bool| clears.iter().filter(|answer| **answer == Ok(clear)).count();
     assert!(count(true) > 5 && count(false) > 2, "{} {}", count(true), count(false));

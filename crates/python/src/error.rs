@@ -65,7 +65,15 @@ impl Refused {
                 let text = format!("structure `{name}`: {}", refused.text());
                 refused.with_text(text)
             }
-            SceneError::Robot { robot, error } => Self::from(error).of(&format!("{list}[{robot}]")),
+            SceneError::Robot { robot, structure: None, error } => {
+                Self::from(error).of(&format!("{list}[{robot}]"))
+            }
+            SceneError::Robot { robot, structure: Some(name), error } => {
+                let refused = Self::from(error);
+                let text =
+                    format!("`{list}[{robot}]` beside structure `{name}`: {}", refused.text());
+                refused.with_text(text)
+            }
             SceneError::Robots { robots: [one, other], error } => {
                 Self::from(error).of(&format!("{list}[{one}]` and `{list}[{other}]"))
             }

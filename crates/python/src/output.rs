@@ -185,6 +185,18 @@ pub(crate) fn texts<'py>(py: Python<'py>, texts: Vec<&str>) -> PyResult<Bound<'p
     if is_empty { array.call_method1("astype", ("U",)) } else { Ok(array) }
 }
 
+/// An array of names, or one name if the shape is empty.
+pub(crate) fn names<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    names: Vec<&str>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match names[..] {
+        [name] if shape.is_empty() => Ok(name.into_pyobject(py)?.into_any()),
+        _ => texts(py, names)?.call_method1("reshape", (shape.to_vec(),)),
+    }
+}
+
 /// Why answers of a batch are missing, as the `kind` of their errors; of one answer the empty
 /// string.
 pub(crate) fn statuses<'py, A>(

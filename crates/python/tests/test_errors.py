@@ -181,7 +181,7 @@ SCALARS = {
         lambda x: QUERY.clears(ONE, 0.1, margin=x),
         lambda x: PAIR.clears_motions(LinearMotion(ONE, ONE, 0.1), LinearMotion(ONE, ONE, 0.1), margin=x, resolution=0.1),
         lambda x: QUERY.clears_tube(ONE, 0.1, margin=x, resolution=0.1),
-        lambda x: SCENE.add("wall", MESH, margin=x),
+        lambda x: Scene().add("wall", MESH, margin=x),
     ],
     "resolution": [lambda x: MESH.clears_tube(ONE, 0.1, margin=0.1, resolution=x)],
     "tolerance": [
@@ -322,7 +322,7 @@ def test_errors_of_scenes_have_all_attributes() -> None:
         scene.add("wall", MESH, margin=margin)
         with pytest.raises(ContinuumError) as raised:
             ask(scene)
-        assert str(raised.value).startswith(f"`{name}`: the bounds are")
+        assert str(raised.value).startswith(f"`{name}` beside structure `wall`: the bounds are")
         assert raised.value.kind == "tolerance_too_fine" and raised.value.possible is not None and raised.value.possible > 1e-300
     with pytest.raises(ContinuumError, match=r"^`robots\[1\]`: point 2 has") as raised:
         SCENE.clears([(ONE, 0.1), (spoilt(0, 2)[0], 0.1)])

@@ -264,7 +264,7 @@ def test_other_frames_warn_once(name: str, tmp_path: Path) -> None:
 
 
 def scene_of(mesh: Mesh) -> Scene:
-    scene = Scene()
+    scene = Scene(robot_margin=0.1)
     scene.add("wall", mesh, margin=0.1)
     return scene
 
@@ -355,7 +355,7 @@ def test_scenes_warn_too(tmp_path: Path) -> None:
     for pose, entry, count in ((None, (lps, 0.1), 1), (None, (lps, 0.1, None), 1), (POSE, (lps, 0.1), 0), (None, (lps, 0.1, POSE), 0)):
 
         def ask(mesh: Mesh) -> None:
-            scene = Scene()
+            scene = Scene(robot_margin=0.1)
             scene.add("wall", mesh, margin=0.1, pose=pose)
             for _ in range(2):
                 scene.clears([entry])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 
@@ -9,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import ContinuumError, Mesh, RobotPair, Scene
+from parry_continuum import ContinuumError, Decision, LinearMotion, Mesh, RobotPair, Scene
 from shapes import poses, robots, sphere
 
 RANDOM = np.random.default_rng(61)
@@ -157,14 +159,14 @@ def test_threads_share_a_scene() -> None:
 
 def test_without_margins() -> None:
     scene = Scene()
-    for _ in range(2):
+    for number in range(2):
         found = scene.tightest([(A[0], 0.1)])
         assert found.slack == np.inf and found.structure == -1 and found.is_clear is False
         for robots in ([(A[0], 0.1)], [(A, 0.1)], [(A, 0.1), (B[0], 0.1, POSES[0])]):
             with pytest.raises(ContinuumError, match="nothing in the scene has a margin.*give a structure or the robots a") as raised:
                 scene.clears(robots)
             assert raised.value.kind == "no_margin"
-        scene.add("seen", WALL, margin=None)
+        scene.add(f"seen {number}", WALL, margin=None)
     between_robots = Scene(robot_margin=0.1)
     between_robots.add("seen", WALL, margin=None)
     assert between_robots.clears([(A[0], 0.1)]) is True
@@ -230,3 +232,118 @@ def test_refused(ask: object, kind: str) -> None:
     with pytest.raises(ContinuumError) as raised:
         ask()  # type: ignore[operator]
     assert raised.value.kind == kind
+
+
+def box(half: float) -> tuple[np.ndarray, np.ndarray]:
+    corners = np.array([[x, y, z] for x in (-half, half) for y in (-half, half) for z in (-half, half)])
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return corners, np.array([face for a, b, c, d in quads for face in ([a, b, c], [a, c, d])])
+
+
+INSIDE = np.array([[0.0, 0, 0], [1, 0, 0]])
+
+
+def test_a_robot_inside_of_a_solid_is_in_contact() -> None:
+    surface, solid = Scene(), Scene()
+    surface.add("box", Mesh(*box(5.0)), margin=0.5)
+    solid.add("box", Mesh(*box(5.0)), margin=0.5, solid=True)
+    offsets = np.array([[0.0, 0, 0], [4.5, 0, 0], [5.3, 0, 0], [9, 0, 0]])
+    given = [(INSIDE + offsets[:, None], 0.25)]
+    np.testing.assert_allclose(surface.tightest(given).distance, [4, 0, 0.3, 4], atol=1e-12)
+    expected = np.array([0, 0, 0.3, 4])
+    for scene in (solid, copy.copy(solid), pickle.loads(pickle.dumps(solid)), copy.deepcopy(solid)):
+        found = scene.tightest(given)
+        np.testing.assert_allclose(found.distance, expected, atol=1e-12)
+        assert_array_equal(found.on_first[0], found.on_second[0])
+        assert_array_equal(scene.clears(given), [False, False, False, True])
+        np.testing.assert_allclose(scene.per_structure(given).distance[:, 0], expected, atol=1e-12)
+        assert_array_equal(scene.clears_tube(given, resolution=1e-3), [-1, -1, -1, 1])
+        bounds = scene.clearance(given, tolerance=1e-3)
+        assert ((bounds.lower <= expected - 0.5 + 1e-12) & (expected - 0.5 <= bounds.upper + 1e-12)).all()
+        moves = LinearMotion(INSIDE, INSIDE + [1, 0, 0], 0.25)
+        answer = scene.clears_motion([moves], resolution=1e-3)
+        assert answer.decision is Decision.CONTACT and answer.t == 0 and answer.name == "box"
+        assert scene.clearance_of_motion([moves], tolerance=1e-3)[:2] == (-0.5, -0.5)
+    assert surface.clears_motion([moves], resolution=1e-3).is_clear
+
+
+def test_an_open_mesh_cannot_be_solid() -> None:
+    vertices, faces = box(1.0)
+    scene = Scene()
+    with pytest.raises(ContinuumError, match="`lid`.* 3 open edges and 0 edges whose") as refused:
+        scene.add("lid", Mesh(vertices, faces[1:]), margin=1.0, solid=True)
+    assert refused.value.kind == "not_solid" and len(scene) == 0
+    soup = Mesh(vertices[faces].reshape(-1, 3), np.arange(36).reshape(-1, 3))
+    scene.add("soup", soup, margin=0.0, solid=True)
+    assert not scene.clears([(INSIDE * 0.1, 0.01)])
+    torn = vertices[faces].reshape(-1, 3).copy()
+    torn[0] *= 1.5
+    soup.set_vertices(torn)
+    with pytest.raises(ContinuumError, match="`soup` cannot be solid"):
+        scene.clears([(INSIDE * 0.1, 0.01)])
+
+
+def test_margins_by_pair() -> None:
+    scene = Scene(robot_margin=0.1)
+    target = scene.add("target", Mesh(*box(1.0)), margin=5.0)
+    needle, probe = (INSIDE - [0, 0, 0.5], 0.25), (INSIDE + [7.5, 0, 0], 0.25)
+    assert not scene.clears([needle, probe])
+    scene.set_margin_between(target, 0, margin=None)
+    for one in (scene, copy.copy(scene), pickle.loads(pickle.dumps(scene))):
+        assert one.clears([needle, probe]) and not one.clears([probe, needle])
+        found = one.per_structure([needle, probe])
+        assert found.robot[0] == 1 and found.slack[0] == 1.5 and found.name[0] == "target"
+    scene.set_margin_between(target, 1, margin=7.0)
+    assert scene.tightest([needle, probe]).slack == -0.5
+    with pytest.raises(ContinuumError, match="no structure 3"):
+        scene.set_margin_between(3, 0, margin=1.0)
+    with pytest.raises(ContinuumError, match="`margin`"):
+        scene.set_margin_between(target, 0, margin=-1.0)
+    with pytest.raises(TypeError, match="`robot`"):
+        scene.set_margin_between(target, -1, margin=1.0)
+
+
+def test_names_are_answered_and_unique() -> None:
+    scene = made(0.2)
+    with pytest.raises(ContinuumError, match="`wall`") as refused:
+        scene.add("wall", WALL, margin=None)
+    assert refused.value.kind == "name_taken" and len(scene) == 3
+    given = [(A, 0.1, POSES), (B, 0.1)]
+    names = np.array(["wall", "seen", "vessel", ""])
+    found = scene.tightest(given)
+    assert_array_equal(found.name, names[found.structure])
+    assert scene.tightest([(A[0], 0.1)]).name in names[:3]
+    assert_array_equal(scene.per_structure(given).name, np.tile(names[:3], (60, 1)))
+    contacts = scene.contacts_within(given, reach=1.0)
+    assert_array_equal(contacts.name, names[contacts.structure])
+    bounds = scene.clearance([(A[0], 0.1), (B[0], 0.1)], tolerance=0.1)
+    assert bounds.name == names[bounds.structure]
+    with pytest.raises(ContinuumError, match=r"`motions\[0\]` beside structure `wall`"):
+        moves = LinearMotion(A[0], B[0], 0.1)
+        scene.clears_motion([moves], resolution=1e-30)
+
+
+def test_several_robots_without_a_margin_are_warned_of_once() -> None:
+    given = [(A[0], 0.1), (B[0], 0.1)]
+    motions = [LinearMotion(A[0], A[0], 0.1), LinearMotion(B[0], B[0], 0.1)]
+    queries = {
+        "clears": lambda scene: scene.clears(given),
+        "tightest": lambda scene: scene.tightest(given),
+        "clears_tube": lambda scene: scene.clears_tube(given, resolution=0.1),
+        "clearance": lambda scene: scene.clearance(given, tolerance=0.1),
+        "clears_motion": lambda scene: scene.clears_motion(motions, resolution=0.1),
+    }
+    for query in queries.values():
+        scene = made()
+        with pytest.warns(UserWarning, match="no `robot_margin`, so robots 0 and 1"):
+            query(scene)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            query(scene)
+            nested = Scene(nested=[(1, 0)])
+            nested.add("wall", WALL, margin=0.5)
+            query(nested)
+            scene.clears(given[:1])
+            made(0.1).tightest(given)
+            made().per_structure(given)
+            made().contacts_within(given, reach=1.0)

@@ -94,6 +94,7 @@ fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32;
                     ascending += usize::from(ends[0] < ends[1]);
                 }
             }
+            report.unbalanced_edges += usize::from(faces > 1 && 2 * ascending != faces);
             match (faces, ascending) {
                 (0, _) | (2, 1) => {}
                 (1, _) => boundary.push(ends),

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Strs = NDArray[np.str_]
 
 FloatOrFloats = Any
 IntOrInts = Any
@@ -675,6 +676,8 @@ class _SceneMotionAnswerFields(NamedTuple):
     """The clearance of those shapes is at most this."""
     structure: IntOrInts
     """The structure in contact, or -1 where it is between robots."""
+    name: StrOrStrs
+    """The name of the structure, or the empty string."""
     robots: Ints
     """(2,): the robot and -1, or the two robots, or one robot twice where it is itself."""
     on_first: Floats
@@ -708,6 +711,8 @@ class _SceneClearanceFields(NamedTuple):
     """What the errors that tubes state for themselves cost, and no finer tolerance can mend."""
     structure: IntOrInts
     """The structure, or -1 where it is between two robots."""
+    name: StrOrStrs
+    """The name of the structure, or the empty string."""
     robots: Ints
     """(2,): the robot and -1, or the two robots."""
     on_first: Floats
@@ -742,6 +747,8 @@ class _SceneMotionClearanceFields(NamedTuple):
     """The time of the shapes that realise ``upper``, from 0 to 1."""
     structure: IntOrInts
     """The structure, or -1 where it is between two robots."""
+    name: StrOrStrs
+    """The name of the structure, or the empty string."""
     robots: Ints
     """(2,): the robot and -1, or the two robots."""
     on_first: Floats
@@ -767,7 +774,7 @@ class _PerStructureFields(NamedTuple):
     distance: Floats
     """(M,): the distances, 0 where they touch or overlap."""
     slack: Floats
-    """(M,): the distance less the structure's margin, or NaN where it has none."""
+    """(M,): the distance less the margin between the two, or NaN where they have none."""
     on_robot: Floats
     """(M, 3): the robots' closest points."""
     on_mesh: Floats
@@ -780,6 +787,8 @@ class _PerStructureFields(NamedTuple):
     """(M,): how far along its centreline from the base."""
     triangle: Ints
     """(M,): the structure's closest triangle."""
+    name: Strs
+    """(M,): the name of the structure."""
 
 
 class PerStructure(_Answer, _PerStructureFields):
@@ -793,6 +802,8 @@ class PerStructure(_Answer, _PerStructureFields):
 class _SceneContactsFields(NamedTuple):
     structure: Ints
     """(K,): the structure."""
+    name: Strs
+    """(K,): the name of the structure."""
     robot: Ints
     """(K,): the robot of the list."""
     segment: Ints
@@ -833,6 +844,8 @@ class _TightestFields(NamedTuple):
     """The distance there, 0 where they touch or overlap."""
     structure: IntOrInts
     """The structure, or -1 where it is between two robots."""
+    name: StrOrStrs
+    """The name of the structure, or the empty string."""
     robots: Ints
     """(2,): the robot and -1, or the two robots."""
     segments: Ints

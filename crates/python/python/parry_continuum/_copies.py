@@ -41,11 +41,13 @@ def motion(cls: Any, maker: Optional[str], args: tuple[Any, ...], more: dict[str
 def scene(
     robot_margin: Optional[float],
     nested: Sequence[tuple[int, int]],
-    structures: Sequence[tuple[str, Mesh, Optional[float], Optional[NDArray[np.float64]]]],
+    structures: Sequence[tuple[Any, ...]],
     self_margin: Optional[float] = None,
 ) -> Scene:
     """A scene with its structures."""
     made = Scene(robot_margin=robot_margin, self_margin=self_margin, nested=nested)
-    for name, mesh, margin, pose in structures:
-        made.add(name, mesh, margin=margin, pose=pose)
+    for name, mesh, margin, pose, solid, margins_between in structures:
+        number = made.add(name, mesh, margin=margin, pose=pose, solid=solid)
+        for robot, between in margins_between:
+            made.set_margin_between(number, robot, margin=between)
     return made

@@ -183,6 +183,14 @@ pub(crate) mod of {
         tolerance
     );
 
+    pub(crate) fn structure(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+        super::whole(given, "structure", 0)
+    }
+
+    pub(crate) fn robot(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+        super::whole(given, "robot", 0)
+    }
+
     pub(crate) fn segments(given: &Bound<'_, PyAny>) -> PyResult<u32> {
         super::whole(given, "segments", 1)
     }

@@ -1,5 +1,6 @@
 //! The tuples of a scene's answers.
 
+use super::Snapshot;
 use super::robots::Placed;
 use crate::input::Robots;
 use crate::output::{answer, array, array_or_number, flat};
@@ -68,6 +69,7 @@ impl Row {
 pub(super) fn tightest<'py>(
     py: Python<'py>,
     robots: &Robots<'py>,
+    structures: &Snapshot,
     all: &[Row],
 ) -> PyResult<Bound<'py, PyAny>> {
     let shape = || robots.shape(&[]);
@@ -75,6 +77,7 @@ pub(super) fn tightest<'py>(
         array_or_number(py, shape(), all.iter().map(|row| row.slack).collect())?,
         array_or_number(py, shape(), all.iter().map(|row| row.distance).collect())?,
         array_or_number(py, shape(), all.iter().map(|row| row.structure).collect())?,
+        structures.names(py, &shape(), all.iter().map(|row| row.structure))?,
         array(py, robots.shape(&[2]), all.iter().flat_map(|row| row.robots).collect())?,
         array(py, robots.shape(&[2]), all.iter().flat_map(|row| row.segments).collect())?,
         array_or_number(py, shape(), all.iter().map(|row| row.triangle).collect())?,
@@ -88,6 +91,7 @@ pub(super) fn tightest<'py>(
 pub(super) fn per_structure<'py>(
     py: Python<'py>,
     shape: &[usize],
+    structures: &Snapshot,
     all: &[StructureProximity],
 ) -> PyResult<Bound<'py, PyAny>> {
     let numbers = |of: fn(&StructureProximity) -> f64| {
@@ -108,6 +112,7 @@ pub(super) fn per_structure<'py>(
         places(|it| it.nearest.witness.segment)?,
         numbers(|it| it.nearest.witness.arc_length)?,
         places(|it| it.nearest.witness.triangle)?,
+        structures.names(py, shape, all.iter().map(|it| it.structure.into()))?,
     );
     answer!(py, "PerStructure", values)
 }
@@ -115,6 +120,7 @@ pub(super) fn per_structure<'py>(
 /// The rows of set k of a batch are between two offsets.
 pub(super) fn contacts<'py>(
     py: Python<'py>,
+    structures: &Snapshot,
     all: &[SceneContact],
     offsets: Vec<i64>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -134,6 +140,7 @@ pub(super) fn contacts<'py>(
         .flat_map(|(ends, set)| (ends[0]..ends[1]).map(move |_| set));
     let values = [
         places(|it| it.structure)?.into_any(),
+        structures.names(py, &count(), all.iter().map(|it| it.structure.into()))?,
         places(|it| it.robot)?.into_any(),
         places(|it| it.contact.witness.segment)?.into_any(),
         numbers(|contact| contact.fraction)?.into_any(),

@@ -1,5 +1,6 @@
 //! The tuples `SceneClearance` and `SceneMotionClearance`.
 
+use super::Snapshot;
 use super::place::{Place, place_fields};
 use crate::output::{answer, array_or_number, statuses};
 use crate::threads::Asked;
@@ -57,6 +58,7 @@ fn place_of(place: &ScenePlace) -> Place {
 pub(super) fn bounds<'py>(
     py: Python<'py>,
     asked: &impl Asked,
+    structures: &Snapshot,
     all: &[Result<Bounds, &'static str>],
     is_of_motion: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -75,7 +77,7 @@ pub(super) fn bounds<'py>(
     if is_of_motion {
         values.push(numbers(|it| it.t)?);
     }
-    values.extend(place_fields(py, asked, &places)?);
+    values.extend(place_fields(py, asked, structures, &places)?);
     values.push(statuses(py, all, asked.count().is_some())?);
     let values = PyTuple::new(py, values)?;
     if is_of_motion {

@@ -13,13 +13,13 @@ use crate::input::{
     shape_text, stated_frame,
 };
 use crate::mesh::Mesh;
-use crate::output::{array, array_or_number};
+use crate::output::{array, array_or_number, names};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
 use mesh_files::Frame;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{self, SceneContact, StructureProximity};
+use parry_continuum::proximity::{self, SceneContact, SceneError, StructureProximity};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use robots::place;
@@ -35,7 +35,7 @@ use std::sync::Arc;
 /// ----------
 /// robot_margin : float, optional
 ///     The distance that robots keep from one another. Without it the scene does not compare robots
-///     with one another.
+///     with one another, and warns once if a query has several.
 /// self_margin : float, optional
 ///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube`
 ///     and `clears_motion` test it.
@@ -67,6 +67,8 @@ pub(crate) struct Scene {
     nested: Vec<[usize; 2]>,
     /// Whether it has warned of robots in different frames.
     has_warned: HasWarned,
+    /// Whether it has warned of robots that it does not compare.
+    has_warned_of_robots: HasWarned,
 }
 
 #[derive(Clone)]
@@ -74,6 +76,9 @@ struct Structure {
     name: String,
     mesh: Arc<Py<Mesh>>,
     margin: Option<f64>,
+    /// The margins from single robots, in the order in which they were set.
+    margins_between: Vec<(usize, Option<f64>)>,
+    solid: bool,
     pose: Pose,
     /// The pose as it was given.
     matrix: Option<[f64; 16]>,
@@ -81,7 +86,7 @@ struct Structure {
 
 /// The structures at the time of a question.
 struct Snapshot {
-    structures: Vec<(String, Arc<Engine>, Option<f64>, Pose)>,
+    structures: Vec<(Structure, Arc<Engine>)>,
     robot_margin: Option<f64>,
     self_margin: Option<f64>,
     nested: Vec<[usize; 2]>,
@@ -101,15 +106,19 @@ impl Lender for Snapshot {
         let lent = self
             .structures
             .iter()
-            .map(|(_, engine, ..)| engine.lend(py))
+            .map(|(_, engine)| engine.lend(py))
             .collect::<PyResult<Vec<_>>>()?;
         let mut scene = proximity::Scene::new();
         let mut build = || -> Result<(), Refused> {
-            for (number, ((name, _, margin, pose), session)) in
-                self.structures.iter().zip(&lent).enumerate()
-            {
-                scene.add(name.clone(), session.search.clone(), *margin)?;
-                scene.set_pose(number, pose)?;
+            for (number, ((it, _), session)) in self.structures.iter().zip(&lent).enumerate() {
+                scene.add(it.name.clone(), session.search.clone(), it.margin)?;
+                scene.set_pose(number, &it.pose)?;
+                for &(robot, margin) in &it.margins_between {
+                    scene.set_margin_between(number, robot, margin)?;
+                }
+                if it.solid {
+                    scene.set_solid(number, true)?;
+                }
             }
             scene.set_nested(&self.nested);
             scene.set_self_margin(self.self_margin)?;
@@ -125,13 +134,58 @@ impl Lender for Snapshot {
         for session in sessions {
             session.lent.into_iter().zip(&mut free).for_each(|(session, free)| free.push(session));
         }
-        for ((_, engine, ..), free) in self.structures.iter().zip(free) {
+        for ((_, engine), free) in self.structures.iter().zip(free) {
             engine.take_back(py, lent, free);
         }
     }
 }
 
+impl Snapshot {
+    /// The names of structures; an empty name for -1.
+    fn names<'py>(
+        &self,
+        py: Python<'py>,
+        shape: &[usize],
+        structures: impl Iterator<Item = i64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let name = |number: i64| {
+            let structure = usize::try_from(number).ok().and_then(|it| self.structures.get(it));
+            structure.map_or("", |(structure, _)| structure.name.as_str())
+        };
+        names(py, shape, structures.map(name).collect())
+    }
+}
+
 impl Scene {
+    /// Warns once if a query has robots that are not compared with one another.
+    fn note_robots(&self, py: Python<'_>, count: usize) -> PyResult<()> {
+        let is_nested =
+            |pair: [usize; 2]| self.nested.iter().any(|&[a, b]| [a.min(b), a.max(b)] == pair);
+        let mut pairs = (0..count).flat_map(|b| (0..b).map(move |a| [a, b]));
+        if self.robot_margin.is_none()
+            && let Some([a, b]) = pairs.find(|pair| !is_nested(*pair))
+        {
+            let text = format!(
+                "the scene has no `robot_margin`, so robots {a} and {b} are not compared with each other; give `robot_margin`, or \
+                 `nested` if one is inside the other"
+            );
+            self.has_warned_of_robots.warn(py, &text)?;
+        }
+        Ok(())
+    }
+
+    /// The robots of a query that compares them with one another.
+    fn robots_apart<'py>(
+        &self,
+        py: Python<'py>,
+        given: Vec<Bound<'py, PyAny>>,
+    ) -> PyResult<Robots<'py>> {
+        let count = given.len();
+        let made = self.robots(py, given)?;
+        self.note_robots(py, count)?;
+        Ok(made)
+    }
+
     /// The robots of a question. A mesh in the scene's own frame warns once if points without a
     /// pose state another frame.
     fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
@@ -172,9 +226,10 @@ impl Scene {
 
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
         let structures = self.structures.with(py, |structures| structures.clone());
-        let engines = structures
-            .into_iter()
-            .map(|it| (it.name, it.mesh.get().engine(py), it.margin, it.pose));
+        let engines = structures.into_iter().map(|it| {
+            let engine = it.mesh.get().engine(py);
+            (it, engine)
+        });
         Snapshot {
             structures: engines.collect(),
             robot_margin: self.robot_margin,
@@ -202,6 +257,7 @@ impl Scene {
             self_margin,
             nested,
             has_warned: HasWarned::default(),
+            has_warned_of_robots: HasWarned::default(),
         })
     }
 
@@ -211,19 +267,36 @@ impl Scene {
     /// Parameters
     /// ----------
     /// name : str
-    ///     For messages.
+    ///     For answers and messages. Each structure has its own.
     /// mesh : Mesh
     /// margin : float or None
     ///     The distance that robots keep from it. A structure with None may be touched, such as a
     ///     target: `per_structure` and `contacts_within` measure it, and the others ignore it.
     /// pose : (4, 4) array, optional
     ///     From the mesh's frame to the scene's.
+    /// solid : bool
+    ///     Whether a robot inside is in contact, at the distance 0. Without it, a mesh is a surface
+    ///     that a robot may be inside of. `contacts_within` takes each structure as a surface.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin is negative or NaN, or the pose is not rigid.
-    #[pyo3(signature = (name, mesh, *, margin, pose = None))]
+    ///     The name is taken, the margin is negative or NaN, the pose is not rigid, or the structure
+    ///     is solid and its mesh is open. If the mesh opens later, queries raise that.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import Mesh, Scene
+    /// >>> corners = [[x, y, z] for x in (0, 9) for y in (0, 9) for z in (0, 9)]
+    /// >>> faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    /// >>> box = Mesh(corners, [[a, b, c] for p, q, r, s in faces for a, b, c in ((p, q, r), (p, r, s))])
+    /// >>> scene = Scene()
+    /// >>> scene.add("table", box, margin=1.0, solid=True)
+    /// 0
+    /// >>> inside = [[4, 4, 4], [5, 4, 4]]
+    /// >>> scene.tightest([(inside, 0.5)])[:4]
+    /// (-1.0, 0.0, 0, 'table')
+    #[pyo3(signature = (name, mesh, *, margin, pose = None, solid = false))]
     fn add(
         &self,
         py: Python<'_>,
@@ -231,6 +304,7 @@ impl Scene {
         #[pyo3(from_py_with = object_of::mesh)] mesh: Py<Mesh>,
         #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
+        solid: bool,
     ) -> PyResult<usize> {
         check_length(py, "margin", margin)?;
         let (pose, matrix) = match pose {
@@ -258,11 +332,72 @@ impl Scene {
                 HasWarned::default().note_pair(py, [&name, &first], [Some(frame), other])?;
             }
         }
-        let structure = Structure { name, mesh: Arc::new(mesh), margin, pose, matrix };
-        Ok(self.structures.with(py, |structures| {
+        if solid {
+            // The same check as in a query: the errors are the same.
+            let mut alone = proximity::Scene::new();
+            let checked = alone
+                .add(name.clone(), mesh.get().engine(py).base(py), None)
+                .and_then(|structure| alone.set_solid(structure, true));
+            checked.map_err(|error| Refused::from(error).raise(py, None))?;
+        }
+        let mesh = Arc::new(mesh);
+        let margins_between = Vec::new();
+        let structure = Structure { name, mesh, margin, margins_between, solid, pose, matrix };
+        let added = self.structures.with(py, |structures| {
+            if let Some(taken) = structures.iter().position(|it| it.name == structure.name) {
+                return Err(SceneError::NameTaken { name: structure.name, structure: taken });
+            }
             structures.push(structure);
-            structures.len() - 1
-        }))
+            Ok(structures.len() - 1)
+        });
+        added.map_err(|error| Refused::from(error).raise(py, None))
+    }
+
+    /// Sets the margin between a structure and one robot, in place of the structure's margin.
+    ///
+    /// Parameters
+    /// ----------
+    /// structure : int
+    ///     The number that `add` returned.
+    /// robot : int
+    ///     The place of the robot in the list of robots.
+    /// margin : float or None
+    ///     With None, the two may touch.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     There is no such structure, or the margin is negative or NaN.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import Mesh, Scene
+    /// >>> target = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> scene = Scene(robot_margin=1.0)
+    /// >>> number = scene.add("target", target, margin=5.0)
+    /// >>> scene.set_margin_between(number, 0, margin=None)
+    /// >>> needle, probe = ([[0, 0, 0], [0, 0, 9]], 0.5), ([[4, 0, 7], [4, 0, 9]], 0.5)
+    /// >>> scene.clears([needle, probe]), scene.clears([probe, needle])
+    /// (True, False)
+    #[pyo3(signature = (structure, robot, *, margin))]
+    fn set_margin_between(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = of::structure)] structure: u32,
+        #[pyo3(from_py_with = of::robot)] robot: u32,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+    ) -> PyResult<()> {
+        check_length(py, "margin", margin)?;
+        let set = self.structures.with(py, |structures| {
+            let (structure, count) = (structure as usize, structures.len());
+            let known = structures
+                .get_mut(structure)
+                .ok_or(SceneError::NoSuchStructure { structure, structures: count })?;
+            known.margins_between.retain(|(other, _)| *other != robot as usize);
+            known.margins_between.push((robot as usize, margin));
+            Ok::<_, SceneError>(())
+        });
+        set.map_err(|error| Refused::from(error).raise(py, None))
     }
 
     /// A scene with the same meshes: where one of them moves, it has moved in both.
@@ -274,6 +409,7 @@ impl Scene {
             self_margin: self.self_margin,
             nested: self.nested.clone(),
             has_warned: HasWarned::default(),
+            has_warned_of_robots: HasWarned::default(),
         }
     }
 
@@ -293,7 +429,8 @@ impl Scene {
         let structures = structures.into_iter().map(|it| {
             let pose =
                 it.matrix.map(|matrix| array(py, vec![4, 4], matrix.to_vec())).transpose()?;
-            (it.name, it.mesh.clone_ref(py), it.margin, pose).into_pyobject(py)
+            let mesh = it.mesh.clone_ref(py);
+            (it.name, mesh, it.margin, pose, it.solid, it.margins_between).into_pyobject(py)
         });
         let structures = structures.collect::<PyResult<Vec<_>>>()?;
         let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
@@ -337,7 +474,7 @@ impl Scene {
         #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots(py, robots)?;
+        let robots = self.robots_apart(py, robots)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -373,8 +510,9 @@ impl Scene {
         #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots(py, robots)?;
+        let robots = self.robots_apart(py, robots)?;
         let mut all: Vec<Row> = Vec::with_capacity(robots.len());
+        let structures = self.snapshot(py);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let chains: Vec<_> = placed.iter().map(|(chain, pose, _)| (*chain, *pose)).collect();
@@ -382,11 +520,12 @@ impl Scene {
                 session.scene.tightest(&chains)?.map_or(NOTHING, |found| Row::new(&found, &placed));
             Ok(())
         };
-        ask_each(py, &self.snapshot(py), &robots, (NOTHING, 1), ask, |_, found| all.extend(found))?;
-        tightest(py, &robots, &all)
+        ask_each(py, &structures, &robots, (NOTHING, 1), ask, |_, found| all.extend(found))?;
+        tightest(py, &robots, &structures, &all)
     }
 
-    /// Of each structure, where the robots are closest to it, whether it has a margin or not.
+    /// Of each structure, where the robots are closest to it, whether it has a margin or not. If
+    /// robots have different margins from it, where the slack is least.
     ///
     /// Parameters
     /// ----------
@@ -422,7 +561,7 @@ impl Scene {
         ask_each(py, &snapshot, &robots, (Vec::new(), 1), ask, |_, found| {
             all.extend(found.iter().flatten())
         })?;
-        per_structure(py, &robots.shape(&[snapshot.structures.len()]), &all)
+        per_structure(py, &robots.shape(&[snapshot.structures.len()]), &snapshot, &all)
     }
 
     /// Every contact of every robot with every structure that is at most `reach` away, whether that
@@ -462,17 +601,18 @@ impl Scene {
         check_length(py, "prominence", Some(prominence))?;
         let robots = self.robots(py, robots)?;
         let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
+        let structures = self.snapshot(py);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
             Ok(session.scene.contacts_within(&placed, reach, prominence, &mut row[0])?)
         };
-        ask_each(py, &self.snapshot(py), &robots, (Vec::new(), 1), ask, |_, found| {
+        ask_each(py, &structures, &robots, (Vec::new(), 1), ask, |_, found| {
             for found in found {
                 all.extend(found);
                 offsets.push(all.len() as i64);
             }
         })?;
-        contacts(py, &all, offsets)
+        contacts(py, &structures, &all, offsets)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bounds::{Bounds, bounds};
 use super::place::{Place, place_fields};
-use super::{Scene, Session};
+use super::{Scene, Session, Snapshot};
 use crate::error::Refused;
 use crate::input::{check_length, is_bool, matrices, object_of, of, pose_if_one, vectors};
 use crate::mesh::rows;
@@ -16,7 +16,7 @@ use parry_continuum::proximity::{
     self, SceneError, SceneMotionAnswer, SceneMotionContact, StructureEnd,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 /// Where a structure is at the end of a motion.
 enum End {
@@ -33,6 +33,7 @@ impl Scene {
         }
         let frames: Vec<_> = given.iter().map(|motion| motion.get().stated_frame()).collect();
         self.note_frames(py, "motions", &frames)?;
+        self.note_robots(py, given.len())?;
         Ok(made)
     }
 
@@ -47,8 +48,9 @@ impl Scene {
         let ask = |session: &mut Session, motions: &Vec<&Moving>| {
             ask(&mut session.scene, motions).map_err(of_motions)
         };
-        let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
-        motion_answers(py, &motions, &all)
+        let structures = self.snapshot(py);
+        let all = answer_each_or_kind(py, &structures, &motions, ask)?;
+        motion_answers(py, &motions, &structures, &all)
     }
 }
 
@@ -256,8 +258,9 @@ impl Scene {
             let found = found.map_err(of_motions)?;
             Ok(found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_motion))
         };
-        let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
-        bounds(py, &motions, &all, true)
+        let structures = self.snapshot(py);
+        let all = answer_each_or_kind(py, &structures, &motions, ask)?;
+        bounds(py, &motions, &structures, &all, true)
     }
 }
 
@@ -305,6 +308,7 @@ fn place_of(contact: &SceneMotionContact) -> Place {
 fn motion_answers<'py>(
     py: Python<'py>,
     asked: &impl Asked,
+    structures: &Snapshot,
     all: &[Result<SceneMotionAnswer, &'static str>],
 ) -> PyResult<Bound<'py, PyAny>> {
     let contacts: Vec<_> = all.iter().map(|it| it.ok().and_then(|it| it.contact)).collect();
@@ -317,21 +321,14 @@ fn motion_answers<'py>(
     let intervals = all.iter().flat_map(|it| it.map_or([0.0, 1.0], |it| it.interval)).collect();
     let places: Vec<_> =
         contacts.iter().map(|it| it.as_ref().map_or(Place::NONE, place_of)).collect();
-    let [structure, robots, on_first, on_second, arc_lengths, triangle] =
-        place_fields(py, asked, &places)?;
-    let values = (
+    let mut values = vec![
         members(py, Enumeration::Decision, asked.shape(&[]), decisions)?,
-        array(py, asked.shape(&[2]), intervals)?,
+        array(py, asked.shape(&[2]), intervals)?.into_any(),
         numbers(SceneMotionContact::t)?,
         numbers(SceneMotionContact::upper)?,
-        structure,
-        robots,
-        on_first,
-        on_second,
-        arc_lengths,
-        triangle,
-        members(py, Enumeration::UndecidedReason, asked.shape(&[]), reasons)?,
-        statuses(py, all, asked.count().is_some())?,
-    );
-    answer!(py, "SceneMotionAnswer", values)
+    ];
+    values.extend(place_fields(py, asked, structures, &places)?);
+    values.push(members(py, Enumeration::UndecidedReason, asked.shape(&[]), reasons)?);
+    values.push(statuses(py, all, asked.count().is_some())?);
+    answer!(py, "SceneMotionAnswer", PyTuple::new(py, values)?)
 }

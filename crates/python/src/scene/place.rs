@@ -1,5 +1,6 @@
 //! Where in a scene an answer is.
 
+use super::Snapshot;
 use crate::output::{array, array_or_number, flat};
 use crate::threads::Asked;
 use parry_continuum::parry::math::Vector;
@@ -46,12 +47,13 @@ impl Place {
     }
 }
 
-/// The fields `structure`, `robots`, `on_first`, `on_second`, `arc_lengths` and `triangle`.
+/// The fields `structure`, `name`, `robots`, `on_first`, `on_second`, `arc_lengths` and `triangle`.
 pub(super) fn place_fields<'py>(
     py: Python<'py>,
     asked: &impl Asked,
+    structures: &Snapshot,
     places: &[Place],
-) -> PyResult<[Bound<'py, PyAny>; 6]> {
+) -> PyResult<[Bound<'py, PyAny>; 7]> {
     let numbers = |of: fn(&Place) -> i64| {
         array_or_number(py, asked.shape(&[]), places.iter().map(of).collect::<Vec<_>>())
     };
@@ -64,6 +66,7 @@ pub(super) fn place_fields<'py>(
     let lengths = places.iter().flat_map(|it| it.arc_lengths).collect();
     Ok([
         numbers(|it| it.structure)?,
+        structures.names(py, &asked.shape(&[]), places.iter().map(|it| it.structure))?,
         array(py, asked.shape(&[2]), robots)?.into_any(),
         points(0)?,
         points(1)?,

@@ -54,7 +54,7 @@ impl Scene {
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "resolution", resolution)?;
-        let robots = self.robots(py, robots)?;
+        let robots = self.robots_apart(py, robots)?;
         let ask = |session: &mut Session, robot: &Given<'_>| {
             let placed = placed(robot)?;
             Ok(decision_value(session.scene.clears_tube(&each(&placed), resolution)?))
@@ -106,13 +106,14 @@ impl Scene {
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "tolerance", tolerance)?;
-        let robots = self.robots(py, robots)?;
+        let robots = self.robots_apart(py, robots)?;
         let ask = |session: &mut Session, robot: &Given<'_>| {
             let placed = placed(robot)?;
             let found = session.scene.clearance(&each(&placed), tolerance)?;
             Ok(found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_tubes))
         };
-        let all = answer_each_or_kind(py, &self.snapshot(py), &robots, ask)?;
-        bounds(py, &robots, &all, false)
+        let structures = self.snapshot(py);
+        let all = answer_each_or_kind(py, &structures, &robots, ask)?;
+        bounds(py, &robots, &structures, &all, false)
     }
 }
