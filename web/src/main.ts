@@ -129,9 +129,19 @@ function update() {
       answered = { answers, margin, farthest: Math.max(FARTHEST, 2 * margin) };
       show([...wall.notes(), ...robot.notes(), ...answers.doubts()]);
     });
+    nameRobot(true);
   } catch (error) {
     refuse(error);
+    nameRobot(false);
   }
+}
+
+/** Names the robot, or the chosen file if there is no answer about it. */
+function nameRobot(isAnswered: boolean) {
+  const file = isAnswered ? `The robot is ${robotFile?.name}.` : `There is no answer about the file ${robotFile?.name}.`;
+  find("robot-text").textContent = robotFile
+    ? `${file} The joints do not move it.`
+    : "The robot is made of the concentric tubes.";
 }
 
 /** Removes everything that belongs to the last answer. */
@@ -185,7 +195,7 @@ function show(warnings: string[]) {
   find("verdict").className = near > 0 ? "near" : answers.is_inside() ? "kept" : "";
   const turned = answers.turned();
   find("details").textContent = [
-    `Link ${answers.closest() + 1} of ${distances.length}, counted from the base, is closest, `
+    `Link ${answers.closest()} of ${distances.length}, counted from 0 at the base, is closest, `
       + `${answers.arc_length().toFixed(1)} mm along the robot.`,
     ...(turned ? [`The robot is turned from ${turned}.`] : []),
     ...(find<HTMLTextAreaElement>("pose").value.trim() ? ["The robot is placed by the pose."] : []),
@@ -260,9 +270,6 @@ function takeRobot(next?: Chosen, isFromField = false) {
     find<HTMLInputElement>(id).disabled = next === undefined;
   }
   find<HTMLFieldSetElement>("joints").disabled = next !== undefined;
-  find("robot-text").textContent = next
-    ? `The robot is ${next.name}. The joints do not move it.`
-    : "The robot is made of the concentric tubes.";
 }
 
 /** Files are taken one after the other: the last choice is the one that stays. */

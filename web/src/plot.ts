@@ -10,7 +10,7 @@ export function plotClearance(into: HTMLElement, answers: Answers, margin: numbe
     const from = along;
     along += lengths[link]!;
     const [red, green, blue] = linkColour(distance, margin, farthest).map((share) => Math.round(255 * share));
-    const title = `Link ${link + 1}: ${distance.toFixed(3)} mm`;
+    const title = `Link ${link}: ${distance.toFixed(3)} mm`;
     return { from, to: along, distance, fill: `rgb(${red}, ${green}, ${blue})`, title };
   });
   const figure = Plot.plot({

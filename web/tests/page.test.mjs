@@ -89,7 +89,7 @@ test("the page shows the robot in the ventricle, as far from the wall as the cra
   const closest = found.indexOf(Math.min(...found));
   assert.match(
     await text("details"),
-    new RegExp(`^Link ${closest + 1} of 30, counted from the base, is closest, [\\d.]+ mm along the robot\\.$`),
+    new RegExp(`^Link ${closest} of 30, counted from 0 at the base, is closest, [\\d.]+ mm along the robot\\.$`),
   );
 });
 
