@@ -4,10 +4,12 @@
 //! 1. Divide the segments into about [`SLICES`] slices with flat ends, and measure each. A slice is
 //!    the union of the robot's discs there.
 //! 2. Add the minimum, which the caps that fill the bends may have. So the curve passes through it.
-//! 3. Draw the distances by arc length, with the minimum and the margin.
+//! 3. Draw the distances by arc length, with the minimum and the margin. The parts within the margin
+//!    are orange.
 
 use crate::number::{as_written, length, short};
 use crate::robot::Robot;
+use crate::verdict::Verdict;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
@@ -30,6 +32,9 @@ pub struct Plot<'a> {
     pub pose: &'a Pose,
     pub minimum: &'a LinkProximity,
     pub margin: Option<f64>,
+    pub verdict: Option<Verdict>,
+    /// The bounds on the clearance of the curve, if they were asked for.
+    pub bounds: Option<[f64; 2]>,
 }
 
 impl Plot<'_> {
@@ -91,11 +96,18 @@ impl Plot<'_> {
 
         let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
-        let title = format!(
-            "The robot is closest to the wall {} from its base: {}",
+        let closest = format!(
+            "closest to the wall {} from the base: {}",
             length(at.0, 3, unit),
             length(at.1, 4, unit)
         );
+        let title = match self.verdict {
+            Some(verdict) => {
+                let margin = as_written(verdict.margin, unit);
+                format!("Margin {margin} {}; {closest}", verdict.decision())
+            }
+            None => format!("The robot is {closest}"),
+        };
         let mut chart = ChartBuilder::on(&area)
             .caption(title, ("sans-serif", 24))
             .margin(16)
@@ -114,6 +126,11 @@ impl Plot<'_> {
             .bold_line_style(RGBColor(225, 225, 225))
             .draw()?;
         chart.draw_series(LineSeries::new(curve.iter().copied(), BLUE.stroke_width(2)))?;
+        if let Some(margin) = self.margin {
+            for within in within(curve, margin) {
+                chart.draw_series(LineSeries::new(within, ORANGE.stroke_width(4)))?;
+            }
+        }
         let label = |place: (f64, f64), text: String, colour: RGBColor, is_above: bool| {
             let is_right = place.0 > 0.5 * whole;
             let horizontal = if is_right { HPos::Right } else { HPos::Left };
@@ -133,12 +150,41 @@ impl Plot<'_> {
             chart.draw_series([label((side, margin), text, ORANGE, margin < 0.9 * high)])?;
         }
         chart.draw_series([Circle::new(at, 5, BLACK.stroke_width(2))])?;
-        let text = format!("link {}: {}", self.minimum.link, length(at.1, 4, unit));
+        let link = format!("link {}: {}", self.minimum.link, length(at.1, 4, unit));
+        let text = self.bounds.map_or(link.clone(), |[lower, upper]| {
+            format!("{link}; the curve: {} to {}", length(lower, 4, unit), length(upper, 4, unit))
+        });
         chart.draw_series([label(at, text, BLACK, at.1 < 0.1 * high)])?;
         area.present()?;
         drop(chart);
         Ok(())
     }
+}
+
+/// Returns the parts of a curve that are at most `margin` high. Their ends are interpolated.
+fn within(curve: &[(f64, f64)], margin: f64) -> Vec<Vec<(f64, f64)>> {
+    let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut was_within = false;
+    for (k, &place) in curve.iter().enumerate() {
+        let is_within = place.1 <= margin;
+        if k > 0 && is_within != was_within {
+            let (from, to) = (curve[k - 1], place);
+            let share = (margin - from.1) / (to.1 - from.1);
+            let crossing = (from.0 + share * (to.0 - from.0), margin);
+            if is_within {
+                parts.push(vec![crossing]);
+            } else if let Some(part) = parts.last_mut() {
+                part.push(crossing);
+            }
+        } else if is_within && parts.is_empty() {
+            parts.push(Vec::new());
+        }
+        if is_within && let Some(part) = parts.last_mut() {
+            part.push(place);
+        }
+        was_within = is_within;
+    }
+    parts
 }
 
 /// Returns the length of a centreline.

@@ -62,7 +62,9 @@ pub fn answer(
         outputs::write("--csv", path, &csv::links(&links))?;
     }
     if let Some(path) = &my.plot {
-        let plot = plot::Plot { robot, pose, minimum: &minimum, margin: my.margin };
+        let bounds = curve.as_ref().map(|curve| [curve.1.lower, curve.1.upper]);
+        let plot =
+            plot::Plot { robot, pose, minimum: &minimum, margin: my.margin, verdict, bounds };
         let unit = wall.unit();
         plot.draw(&mut wall.search, path, unit)?;
     }

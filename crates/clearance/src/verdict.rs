@@ -26,15 +26,20 @@ impl Verdict {
         Self { margin, is_kept, curve: curve.map(|curve| curve.resolved) }
     }
 
+    /// Names the decision.
+    pub fn decision(&self) -> &'static str {
+        match self.is_kept {
+            Some(true) => "kept",
+            Some(false) => "not kept",
+            None => "undecided",
+        }
+    }
+
     /// Describes the decision in one line. Names the sides of the wall, since distances are
     /// unsigned.
     pub fn describe(&self, sides: &Sides, unit: Option<&str>) -> String {
         let margin = as_written(self.margin, unit);
-        let decision = match self.is_kept {
-            Some(true) => "kept",
-            Some(false) => "not kept",
-            None => "undecided",
-        };
+        let decision = self.decision();
         let subject = if self.curve.is_some() { " by the curve" } else { "" };
         let advice = match (self.is_kept, self.curve) {
             (None, Some(true)) => "; give a smaller --tolerance",

@@ -39,7 +39,9 @@ fn a_plot_shows_the_clearance_along_the_robot() {
     succeed(&[&asked[..], &["--margin", "12.5"]].concat());
     let plot = read("clearance.svg");
     assert!(plot.starts_with("<svg") && plot.trim_end().ends_with("</svg>"), "{plot}");
-    for text in ["closest to the wall", "20.00", "link 0", "margin 12.5", "clearance"] {
+    for text in
+        ["Margin 12.5 kept; closest to the wall", "20.00", "link 0", "margin 12.5", "clearance"]
+    {
         assert!(plot.contains(text), "{text}: {plot}");
     }
     // The curve is the longest line. It is level with the ends of the robot at both ends (20), and
