@@ -92,7 +92,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// A contact that is found first is reported instead of an error.
+    /// A contact that is found is reported instead of an error, before or after it.
     /// - Nothing in the scene has a margin.
     /// - The resolution is negative or NaN.
     /// - A motion has no shape at some time, its sections change, or a stated speed is not finite.

@@ -44,7 +44,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// A contact that is found first is reported instead of the last two errors.
+    /// A contact that is found is reported instead of the last two errors, before or after them.
     /// - Nothing in the scene has a margin.
     /// - The resolution is negative or NaN.
     /// - A pose is not finite or not rigid, or moves its tube out of range. The message has the
