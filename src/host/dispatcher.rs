@@ -83,9 +83,10 @@ use parry3d_f64::shape::{CompositeShape, Compound, HeightField, Shape};
 /// asks for an overlap at least that deep. For a manifold, its nearest point counts.
 ///
 /// **Manifolds.** The least `dist` of a pair's manifolds is the `dist` of `contact`. The flags of a
-/// mesh or a height field that fix internal edges may turn a normal, but remove no contact. An edge
-/// without a neighbour constrains nothing. A one-sided surface holds from behind as well, unless
-/// its front is touched at least as deep.
+/// mesh or a height field that fix internal edges may turn a normal, but remove no overlap. An edge
+/// without a neighbour constrains nothing, except for a link that lies on the plane of the face:
+/// it slides over the edge as over a seam of two meshes. A one-sided surface holds from behind as
+/// well, unless its front is touched at least as deep.
 ///
 /// **Nonlinear casts** that do not stop at the start ignore contacts at the start until the link's
 /// core would meet the other shape. At that time half of the depth that keeps the link from passing

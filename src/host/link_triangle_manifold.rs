@@ -18,9 +18,12 @@
 //! # Constraints
 //! Constraints may turn the normal. They never remove the contact:
 //!
-//! 1. At a *free edge*, which no other triangle shares, there is nothing to constrain. parry gives
-//!    such an edge the face's normal, as if a coplanar neighbour continued it. The contact keeps
-//!    its normal.
+//! 1. At a *free edge*, which no other triangle shares, nothing is known about the other side. A
+//!    link that lies on the face's plane ([`side_of_plane`]) may come from another mesh or height
+//!    field that continues the face, and the edge must not stop it: the contact has the face's
+//!    normal. While the link is beside the edge, it has no contact until it touches: the face does
+//!    not extend below the link, and a contact along the plane would stop the link. Any other link
+//!    meets the edge of a thin wall, and the contact keeps its normal.
 //! 2. If the constraints reject a normal, it comes *from behind* a one-sided surface. It is passed
 //!    through the mirrored constraints, as parry does for a two-sided surface.
 //! 3. If a constraint has turned the normal, all points along it may lie beyond the contact, or
@@ -29,20 +32,27 @@
 //!    triangles and decides whether they count ([`Met`]).
 
 use super::axial::unit;
-use super::link_triangle::{LinkTrianglePair, Local};
+use super::link_triangle::{LinkTrianglePair, Local, face_normal};
 use super::link_triangle_points::{Meeting, ROUNDING};
 use super::{crest, feature, rim, support_points};
 use crate::distance::{Vec3, segment_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
-use parry3d_f64::shape::PackedFeatureId;
+use parry3d_f64::shape::{PackedFeatureId, SupportMap};
 
 /// How many times deeper than the overlap a point may be if a constraint has turned the normal; as
 /// in parry.
 const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
+
+/// How far a link may reach beyond a face's plane to lie on it, as a share of half of its
+/// thickness: five times the overlap that rapier's solver allows. With more, a rod in a slot would
+/// lose the hold of the two edges beside it.
+const SUNK: Real = 0.05;
+/// The cosine to the face's normal below which a link is beside a face rather than above it.
+const BESIDE: Real = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Largest rounding error by which a contact may exceed the prediction within which `contact` finds
 /// it, relative to the largest coordinate.
@@ -137,10 +147,19 @@ pub(super) fn update<M, C: Default + Copy>(
         unit(normal).unwrap_or(normal)
     };
     let has_turned = |normals| (of_link(normals) - found.normal).length() > TURNED;
-    if (constrained.is_from_behind || has_turned(constrained.normals))
+    let has_constraints = rules.constraints.0.is_some() || rules.constraints.1.is_some();
+    let is_along = |side: Vector| has_constraints && has_turned(in_order(-side));
+    let side = side_of_plane(&local);
+    if (constrained.is_from_behind || has_turned(constrained.normals) || side.is_some_and(is_along))
         && edges_at(local.triangle, found.on_other).any(rules.is_free)
     {
-        constrained = Constrained { normals: own, is_from_behind: false };
+        constrained = match side {
+            Some(side) if found.distance > 0.0 && found.normal.dot(-side) < BESIDE => {
+                return Ok(None);
+            }
+            Some(side) => self::constrained(pos12, rules.constraints, in_order(-side)),
+            None => Constrained { normals: own, is_from_behind: false },
+        };
     }
     let Constrained { normals, is_from_behind } = constrained;
     let is_turned = has_turned(normals);
@@ -204,6 +223,17 @@ fn constrained(
     }
     let mirrored = project((-normals.0, -normals.1)).map(|(n1, n2)| (-n1, -n2));
     Constrained { normals: mirrored.unwrap_or(normals), is_from_behind: true }
+}
+
+/// Returns the normal of the triangle's plane on the link's side, if the link lies on the plane or
+/// above it: it reaches beyond the plane by at most [`SUNK`] of half of its thickness.
+fn side_of_plane(local: &Local) -> Option<Vector> {
+    let face = face_normal(local.triangle)?;
+    let height =
+        |side: Vector| (local.link.local_support_point_toward(side) - local.triangle[0]).dot(side);
+    let (above, below) = (height(face), height(-face));
+    let half = (0.5 * (above + below)).min(local.link.radius());
+    (above.min(below) <= SUNK * half).then_some(if above >= below { face } else { -face })
 }
 
 /// Yields the edges that contain a point of a triangle, within rounding, for coordinates up to 1.

@@ -296,3 +296,75 @@ fn a_vessel_holds_a_robot_from_within_and_from_without() {
     }
     assert!(held > 300, "{held}");
 }
+
+/// A link on the plane of a face slides over its free edge: the contact has the face's normal, and
+/// there is none before the two touch. A link that reaches farther beyond the plane is stopped.
+#[test]
+fn a_link_on_the_plane_of_a_face_is_not_stopped_by_its_free_edge() {
+    let dispatcher = ContinuumDispatcher::default();
+    for unit in [1.0, 1e-3, 1e-6] {
+        for flags in &FLAGS[2..] {
+            for (sense, first) in [(true, 0), (true, 1), (false, 0), (false, 2)] {
+                let wall = slot_in(unit, 0.2, sense, first, *flags);
+                for side in [1.0, -1.0] {
+                    for caps in [[Cap::Flat; 2], [Cap::Round; 2]] {
+                        // The wall begins at x = 0.1, and the link ends at x = 0.1 - gap.
+                        // A round link stands on its end there.
+                        // Its lowest line is `sunk` beyond the wall.
+                        let normals = |gap: Real, sunk: Real| {
+                            let low = Vector::new(0.1 - gap, side * (0.5 - sunk), 0.0);
+                            let (from, to) = if caps[1] == Cap::Round {
+                                (low, low + side * Vector::Y)
+                            } else {
+                                (low - 0.15 * Vector::X, low)
+                            };
+                            let link = ModifiedCylinder::new(from, to, 0.5, caps).unwrap();
+                            let link = scaled(&link, unit);
+                            let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) =
+                                (vec![], None);
+                            dispatcher
+                                .contact_manifolds(
+                                    &Pose::IDENTITY,
+                                    &link,
+                                    &wall,
+                                    0.02 * unit,
+                                    &mut manifolds,
+                                    &mut workspace,
+                                )
+                                .unwrap();
+                            let held = manifolds.iter().filter(|manifold| {
+                                // The other plate of the slot is below the link.
+                                let mut points = manifold.points.iter();
+                                points.any(|point| point.local_p2.x > 0.0)
+                            });
+                            held.map(|manifold| manifold.local_n1).collect::<Vec<_>>()
+                        };
+                        let context = format!("{caps:?} {flags:?} {sense} {first} {side} {unit}");
+                        let is_level = |normal: &Vector| (normal.y + side).abs() < 1e-9;
+                        if caps[1] == Cap::Flat {
+                            for sunk in [-1e-3, -1e-9, 0.0, 1e-9, 1e-3, 0.02] {
+                                assert_eq!(normals(0.01, sunk), [], "{context} {sunk}");
+                            }
+                            for sunk in [1e-3, 0.02] {
+                                let found = normals(-0.01, sunk);
+                                let is_level = !found.is_empty() && found.iter().all(is_level);
+                                assert!(is_level, "{context} {sunk}: {found:?}");
+                            }
+                            for gap in [0.01, -0.01] {
+                                let found = normals(gap, 0.1);
+                                let stops = |normal: &Vector| normal.x > 1.0 - 1e-9;
+                                let is_stopped = !found.is_empty() && found.iter().all(stops);
+                                assert!(is_stopped, "{context} {gap}: {found:?}");
+                            }
+                        } else {
+                            // The round end is beside the edge, and above it.
+                            let found = normals(0.05, 0.02);
+                            let is_level = !found.is_empty() && found.iter().all(is_level);
+                            assert!(is_level, "{context}: {found:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -9,6 +9,7 @@ mod fast;
 mod long;
 mod rest;
 mod robots;
+mod seams;
 mod setup;
 mod soft;
 mod throws;
