@@ -169,9 +169,8 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
     }
 
     /// Measures pairs of links and triangles in the mesh's frame.
-    #[inline(always)]
+    #[inline(never)] // compiled once for each instruction set, not for each kernel and unit as well
     pub(super) fn between(placed: &Placed<L>, corners: [Vec3<L>; 3]) -> Self {
-        // A function of the instruction set: compiled once for it, not once for each kernel.
         placed.radius.token().vectorize(
             #[inline(always)]
             || Self::measure(placed, corners),
