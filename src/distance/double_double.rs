@@ -115,6 +115,10 @@ impl Scalar for DoubleDouble {
     const FACE_PASSES: usize = 6;
     const HALLEY_STEPS: usize = 6;
 
+    #[inline(never)] // compiled once, not once for each edge of each kernel
+    fn step<R>(work: impl FnOnce() -> R) -> R {
+        work()
+    }
     fn lit(self, value: f64) -> Self {
         value.into()
     }

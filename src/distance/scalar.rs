@@ -95,6 +95,13 @@ pub trait Scalar:
     #[doc(hidden)]
     fn power_of_two_to_unity(self) -> Self;
 
+    /// Runs a step that kernels repeat: inlined, except for numbers whose operations are calls.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn step<R>(work: impl FnOnce() -> R) -> R {
+        work()
+    }
+
     /// Returns 0 in the precision and lanes of `self`.
     #[doc(hidden)]
     #[inline(always)]

@@ -103,9 +103,14 @@ pub fn segment_disc_by<S: DiscSolver<T>, T: Scalar>(
 impl<T: Scalar> DiscSolver<T> for Convex {
     #[inline(always)]
     fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
-        let line = LineDisc::new(ends, normal);
-        let (s, pierces) = line.nearest_to_disc(radius);
-        line.closest_at(s, pierces, normal, radius)
+        T::step(
+            #[inline(always)]
+            || {
+                let line = LineDisc::new(ends, normal);
+                let (s, pierces) = line.nearest_to_disc(radius);
+                line.closest_at(s, pierces, normal, radius)
+            },
+        )
     }
 }
 
