@@ -3,27 +3,8 @@
 use crate::options::Options;
 use crate::robot::Robot;
 use crate::wall::Wall;
-use clap::ValueEnum;
 use mesh_files::Frame;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
-
-/// Which way x and y point.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum Axes {
-    /// Left, posterior, superior: DICOM, ITK
-    Lps,
-    /// Right, anterior, superior: NIfTI, FreeSurfer
-    Ras,
-}
-
-impl From<Axes> for Frame {
-    fn from(axes: Axes) -> Self {
-        match axes {
-            Axes::Lps => Self::Lps,
-            Axes::Ras => Self::Ras,
-        }
-    }
-}
 
 pub fn half_turn() -> Pose {
     Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))

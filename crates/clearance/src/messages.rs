@@ -6,6 +6,15 @@ use parry_continuum::RobotError;
 use parry_continuum::proximity::ProximityError;
 use std::path::Path;
 
+/// Returns a text whose control characters are escaped.
+pub fn in_one_line(text: &str) -> String {
+    let escaped = |c: char| match c.is_control() {
+        true => c.escape_default().collect::<String>(),
+        false => c.into(),
+    };
+    text.chars().map(escaped).collect()
+}
+
 /// Returns the message for a file that cannot be read.
 pub fn of_file(error: &MeshFileError) -> String {
     let text = error.to_string();

@@ -1,9 +1,28 @@
 //! The command's options, and its usage errors in one line.
 
-use crate::frames::Axes;
-use clap::Parser;
+use crate::messages;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::{Parser, ValueEnum};
+use mesh_files::Frame;
 use std::path::PathBuf;
+
+/// Which way x and y point.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Axes {
+    /// Left, posterior, superior: DICOM, ITK
+    Lps,
+    /// Right, anterior, superior: NIfTI, FreeSurfer
+    Ras,
+}
+
+impl From<Axes> for Frame {
+    fn from(axes: Axes) -> Self {
+        match axes {
+            Axes::Lps => Self::Lps,
+            Axes::Ras => Self::Ras,
+        }
+    }
+}
 
 /// How far is a continuum robot from a wall, link by link?
 ///
@@ -108,7 +127,7 @@ impl Options {
     pub fn read() -> Self {
         Self::try_parse().unwrap_or_else(|error| {
             if error.use_stderr() {
-                let text = crate::outputs::in_one_line(&first_paragraph(&error.to_string()));
+                let text = messages::in_one_line(&first_paragraph(&error.to_string()));
                 eprintln!("{text} (--help lists the options)");
                 std::process::exit(2);
             }

@@ -1,5 +1,6 @@
 //! The files that the command writes. None of them replaces a file that it reads.
 
+use crate::messages;
 use crate::options::Options;
 use std::fs;
 use std::io::{ErrorKind, Write, stdout};
@@ -61,16 +62,7 @@ pub fn print(text: &str) -> Result<(), String> {
 
 /// Writes a line to standard error. Names of files may have control characters.
 pub fn tell(kind: &str, text: &str) {
-    eprintln!("{kind}: {}", in_one_line(text));
-}
-
-/// Returns a text whose control characters are escaped.
-pub fn in_one_line(text: &str) -> String {
-    let escaped = |c: char| match c.is_control() {
-        true => c.escape_default().collect::<String>(),
-        false => c.into(),
-    };
-    text.chars().map(escaped).collect()
+    eprintln!("{kind}: {}", messages::in_one_line(text));
 }
 
 /// Where a path leads, for comparison. The file itself may not exist yet.

@@ -2,12 +2,21 @@
 
 use crate::number::{self, fixed, length};
 use crate::sides::{Sides, name, place};
-use crate::single::Proven;
 use crate::verdict::Verdict;
 use crate::wall::Wall;
 use mesh_files::Frame;
 use parry_continuum::proximity::{Clearance, LinkProximity, Opening, Proximity, Witness};
 use serde_json::json;
+
+/// What became of the proof that `--prove` asks for.
+pub enum Proven {
+    /// It was written; this command checks it.
+    By(String),
+    /// The margin is not kept, or undecided.
+    NotKept,
+    /// The margin is kept, but by too little for a proof.
+    TooClose,
+}
 
 pub struct Report<'a> {
     pub wall: &'a Wall,

@@ -150,7 +150,7 @@ fn line(number: f64, answer: &Answer) -> String {
             format!("{},{},,{is_inside}\n", all_digits(number), csv::answer(found))
         }
         Err(error) => {
-            let error = outputs::in_one_line(error).replace('"', "'");
+            let error = messages::in_one_line(error).replace('"', "'");
             format!("{},,,,,,,,,,,\"{error}\",\n", all_digits(number))
         }
     }

@@ -1,7 +1,7 @@
 //! The answer about one robot.
 
 use crate::options::Options;
-use crate::report::Report;
+use crate::report::{Proven, Report};
 use crate::robot::Robot;
 use crate::sides::Sides;
 use crate::verdict::Verdict;
@@ -11,16 +11,6 @@ use mesh_files::Frame;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{Clearance, Proximity};
 use parry_continuum::{Chain, Tube};
-
-/// What became of the proof that `--prove` asks for.
-pub enum Proven {
-    /// It was written; this command checks it.
-    By(String),
-    /// The margin is not kept, or undecided.
-    NotKept,
-    /// The margin is kept, but by too little for a proof.
-    TooClose,
-}
 
 /// The warning beside a margin that is kept on an unknown side.
 pub const NOT_INSIDE: &str = "the margin is kept, but not every link is inside the mesh; \
