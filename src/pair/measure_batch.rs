@@ -2,8 +2,8 @@
 //! [`PlacedLink::measure`] on every instruction set.
 //!
 //! - [`Best::measure_batch`]: several triangles against one link. Keeps the closest.
-//! - [`rank_each`]: triangles near a robot's links, each with its rank: the order in which pieces
-//!   of the wall appear when the bound grows.
+//! - [`measure_each`]: triangles near a robot's links, each with the bound at which it becomes part
+//!   of the wall within the bound.
 
 use super::coordinates::{Nearest, Pair, Placed};
 use super::pair_lanes;
@@ -220,18 +220,19 @@ impl NearestRows {
     }
 }
 
-/// A triangle near a link, with its rank.
+/// A triangle that was measured near a link.
 #[derive(Clone, Copy)]
-pub(crate) struct Ranked {
-    /// The distance; if that is 0, the axis distance minus the radius, at most 0.
-    pub rank: Real,
+pub(crate) struct Measurement {
+    /// The distance; if that is 0, the axis distance minus the radius, at most 0. In this order
+    /// triangles appear when the bound grows.
+    pub appears_at: Real,
     pub nearest: Nearest,
     /// The rounding error of the distance.
     pub rounding: Real,
 }
 
 /// The results of several pairs.
-struct RankRows {
+struct MeasurementRows {
     nearest: NearestRows,
     /// The axis distances minus the radii.
     to_axis: [Real; BATCH],
@@ -239,11 +240,11 @@ struct RankRows {
 }
 
 /// Measures triangles, each with its link, and passes each result to `take` in order.
-pub(crate) fn rank_each<'a>(
+pub(crate) fn measure_each<'a>(
     level: Level,
     mesh: &Mesh,
     mut pairs: impl Iterator<Item = (&'a PlacedLink, u32)>,
-    mut take: impl FnMut(Ranked),
+    mut take: impl FnMut(Measurement),
 ) {
     let (mut rows, mut triangles) = ([[0.0; BATCH]; 18], [0; BATCH]);
     loop {
@@ -257,18 +258,18 @@ pub(crate) fn rank_each<'a>(
         if count == 0 {
             return;
         }
-        let found = ranks_at(level, &rows, count);
+        let found = measurements_at(level, &rows, count);
         for (lane, &triangle) in triangles.iter().enumerate().take(count) {
-            take(ranked(&found, lane, triangle));
+            take(measurement(&found, lane, triangle));
         }
     }
 }
 
-fn ranked(found: &RankRows, lane: usize, triangle: u32) -> Ranked {
+fn measurement(found: &MeasurementRows, lane: usize, triangle: u32) -> Measurement {
     let nearest = found.nearest.nearest(lane, triangle);
-    let rank =
+    let appears_at =
         if nearest.distance <= 0.0 { found.to_axis[lane].min(0.0) } else { nearest.distance };
-    Ranked { rank, nearest, rounding: rounding(found.extent[lane]) }
+    Measurement { appears_at, nearest, rounding: rounding(found.extent[lane]) }
 }
 
 /// Returns the rounding error of the distance between a link and a shape whose coordinates relative
@@ -278,11 +279,11 @@ pub(crate) fn rounding(extent: Real) -> Real {
 }
 
 #[inline(never)] // compiled for each instruction set, not for each use as well
-fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
+fn measurements_at(level: Level, pairs: &PairRows, count: usize) -> MeasurementRows {
     let [to_axis, extent] = [[0.0; BATCH]; 2];
-    let mut ranks = RankRows { nearest: NearestRows::new(), to_axis, extent };
-    dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut ranks));
-    ranks
+    let mut measured = MeasurementRows { nearest: NearestRows::new(), to_axis, extent };
+    dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut measured));
+    measured
 }
 
 #[inline(always)]
@@ -290,14 +291,14 @@ fn fill<L: Pack<Element = f64>>(
     token: L::Token,
     pairs: &PairRows,
     count: usize,
-    ranks: &mut RankRows,
+    measured: &mut MeasurementRows,
 ) {
     for lane in (0..count).step_by(L::LANES) {
         let pair = PairLanes::<L>::new(token, pairs, lane);
-        ranks.nearest.take(lane, &pair);
+        measured.nearest.take(lane, &pair);
         let PairLanes { pair: Pair { link, unit, extent, .. }, axial, .. } = pair;
-        ((axial.axis_squared.sqrt() - link.radius) * unit).store(&mut ranks.to_axis[lane..]);
-        extent.store(&mut ranks.extent[lane..]);
+        ((axial.axis_squared.sqrt() - link.radius) * unit).store(&mut measured.to_axis[lane..]);
+        extent.store(&mut measured.extent[lane..]);
     }
 }
 

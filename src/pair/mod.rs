@@ -30,7 +30,7 @@ pub(crate) use coordinates::Nearest;
 pub(crate) use link_lanes::{LinkLanes, Nearer, SearchLink};
 #[cfg(feature = "robots")]
 pub(crate) use link_pair_batch::{LinkPairBatch, PlacedEnds};
-pub(crate) use measure_batch::{Best, Ranked, rank_each, rounding};
+pub(crate) use measure_batch::{Best, Measurement, measure_each, rounding};
 pub(crate) use pair_lanes::BATCH;
 pub(crate) use placed_link::PlacedLink;
 pub(crate) use placed_robot::PlacedRobot;

@@ -6,7 +6,7 @@ use super::kernels::Question;
 use super::robots::Robots;
 use crate::answer::{LinkProximity, ProximityError};
 use crate::mesh::Mesh;
-use crate::pair::{Best, Nearest, PlacedRobot, rank_each};
+use crate::pair::{Best, Nearest, PlacedRobot, measure_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
@@ -188,9 +188,9 @@ impl Measure<'_> {
         let mut best = vec![Best::within(Real::INFINITY); links.len()];
         let pairs = found.candidates.iter().map(|of| (&links[of.link as usize], of.triangle));
         let mut candidates = found.candidates.iter();
-        rank_each(self.level, self.mesh, pairs, |ranked| {
+        measure_each(self.level, self.mesh, pairs, |measured| {
             if let Some(candidate) = candidates.next() {
-                best[candidate.link as usize].take(ranked.nearest);
+                best[candidate.link as usize].take(measured.nearest);
             }
         });
         answers.clear();
@@ -211,8 +211,8 @@ impl Measure<'_> {
         let pairs = links.iter().zip(found.candidates).map(|(link, of)| (link, of.triangle));
         let mut best: Option<((Real, u32, u32), usize, Nearest)> = None;
         let mut candidate = 0;
-        rank_each(self.level, self.mesh, pairs, |ranked| {
-            let nearest = ranked.nearest;
+        measure_each(self.level, self.mesh, pairs, |measured| {
+            let nearest = measured.nearest;
             let key = (nearest.distance, nearest.triangle, found.candidates[candidate].link);
             if best.is_none_or(|(least, ..)| key < least) {
                 best = Some((key, candidate, nearest));
@@ -233,8 +233,8 @@ impl Measure<'_> {
             let links: Vec<_> = candidates.iter().map(|of| robot.link(of.link as usize)).collect();
             let pairs = links.iter().zip(candidates).map(|(link, of)| (link, of.triangle));
             let mut is_clear = true;
-            rank_each(self.level, self.mesh, pairs, |ranked| {
-                is_clear &= ranked.nearest.distance > margin;
+            measure_each(self.level, self.mesh, pairs, |measured| {
+                is_clear &= measured.nearest.distance > margin;
             });
             is_clear
         })

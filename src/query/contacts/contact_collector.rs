@@ -13,7 +13,7 @@ use super::triangle_candidates::{
     CandidateEnd, CandidateIndex, NearLink, TriangleCandidates, Wall,
 };
 use crate::answer::{Contact, LinkProximity};
-use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
+use crate::pair::{Measurement, PlacedLink, PlacedPair, PlacedRobot, add_contacts, measure_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
@@ -36,7 +36,7 @@ pub(crate) struct ContactMemory {
     /// The triangles to measure, link by link.
     measured: Vec<u32>,
     /// The measurement of each triangle in `measured`.
-    ranked: Vec<Ranked>,
+    ranked: Vec<Measurement>,
     /// Long rings near the current link, for the culling and for the sweep.
     cull_rings: LongRings<CullRing>,
     sweep_rings: LongRings<SweepRing>,
@@ -167,7 +167,7 @@ impl ContactMemory {
         let of_link = |at: &ActiveLink| self.measured[at.measured.clone()].iter();
         let pairs =
             self.links.iter().flat_map(|at| of_link(at).map(|&triangle| (&at.link, triangle)));
-        rank_each(level, wall.mesh, pairs, |ranked| self.ranked.push(ranked));
+        measure_each(level, wall.mesh, pairs, |ranked| self.ranked.push(ranked));
         self.found.clear();
         for ActiveLink { number: link_number, link, triangles, measured } in &self.links {
             let candidates = self.triangles.between(*triangles);

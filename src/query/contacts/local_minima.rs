@@ -110,7 +110,7 @@
 use super::long_rings::{LongRings, SHORT_RING};
 use super::triangle_candidates::NearLink;
 use crate::mesh::{PARTS, ends_of};
-use crate::pair::{Nearest, PlacedLink, Ranked, rounding};
+use crate::pair::{Measurement, Nearest, PlacedLink, rounding};
 use parry3d_f64::math::{Real, Vector};
 
 /// The rank of all culled triangles: they count as one piece, nearer than any other.
@@ -186,10 +186,10 @@ fn lies_on_slope(
 }
 
 /// Step 2: sorts the triangles, nearest first, and returns those within the margin.
-pub(super) fn nearest_first(measured: &mut [Ranked], margin: Real) -> &[Ranked] {
-    // Triangles beyond the margin come last, because their rank is their distance.
+pub(super) fn nearest_first(measured: &mut [Measurement], margin: Real) -> &[Measurement] {
+    // Triangles beyond the margin come last, because they appear at their distance.
     measured.sort_unstable_by(|a, b| {
-        a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle))
+        a.appears_at.total_cmp(&b.appears_at).then(a.nearest.triangle.cmp(&b.nearest.triangle))
     });
     let count = measured.partition_point(|ranked| ranked.nearest.distance <= margin);
     &measured[..count]
@@ -202,7 +202,7 @@ pub(super) struct Sweep<'a> {
     /// The rank of each candidate.
     pub ranks: &'a [u32],
     /// The triangles within the margin, nearest first.
-    pub ranked: &'a [Ranked],
+    pub ranked: &'a [Measurement],
     /// Union-find: for each rank an earlier one of the same piece, or itself.
     pub piece: &'a mut Vec<u32>,
     pub rings: &'a mut LongRings<SweepRing>,
@@ -225,7 +225,7 @@ impl Sweep<'_> {
     /// (step 3).
     fn add(&mut self, rank: u32) {
         self.piece.push(rank);
-        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
+        let Measurement { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
         let (near, mesh) = (self.near, self.near.wall.mesh);
         let Some(candidate) = near.index_of(nearest.triangle) else { return };
         let (known, shared) = (near.candidates.triangles[candidate], mesh.parts());
@@ -252,12 +252,12 @@ impl Sweep<'_> {
             // share.
             let meets_culled = ring.has_culled || ring.culled_lower < known.upper;
             let first = ring.first;
-            let others = [meets_culled.then_some(CULLED), (first < rank).then_some(first)];
-            if others == [None; 2] {
+            let met_ranks = [meets_culled.then_some(CULLED), (first < rank).then_some(first)];
+            if met_ranks == [None; 2] {
                 continue;
             }
             let holds_least_point = is_on(nearest.on_mesh, ends_of(corners, part), own_rounding);
-            for with in others.into_iter().flatten() {
+            for with in met_ranks.into_iter().flatten() {
                 met[count] = (part, with, holds_least_point);
                 count += 1;
             }
@@ -284,7 +284,7 @@ impl Sweep<'_> {
     /// Merges a triangle with the pieces of nearer triangles beyond its seams: beyond the seams
     /// that hold its least point, or beyond the other seams.
     fn meet_across_seams(&mut self, rank: u32, met_there: bool) {
-        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
+        let Measurement { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
         let mesh = self.near.wall.mesh;
         for seam in mesh.parts().seams(nearest.triangle) {
             // A triangle with a seam is never culled.

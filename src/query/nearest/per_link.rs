@@ -7,7 +7,7 @@
 
 use crate::answer::LinkProximity;
 use crate::mesh::Mesh;
-use crate::pair::{Best, PlacedLink, PlacedRobot, rank_each};
+use crate::pair::{Best, PlacedLink, PlacedRobot, measure_each};
 use crate::search::hierarchy::MeshSearch;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
@@ -106,9 +106,9 @@ impl CandidateBatch {
             owners.iter().zip(&*triangles).map(|(&owner, &triangle)| (&links[owner].1, triangle));
         let mut owners = owners.iter();
         let mut count = 0;
-        rank_each(level, mesh, pairs, |ranked| {
+        measure_each(level, mesh, pairs, |measured| {
             if let Some(&owner) = owners.next() {
-                nearest[owner].take(ranked.nearest);
+                nearest[owner].take(measured.nearest);
             }
             count += 1;
         });
