@@ -48,6 +48,10 @@ const ROUNDING: Real = 64.0 * Real::EPSILON;
 /// Largest difference of two iterations for the same pair, relative to the largest coordinate.
 const ITERATED: Real = 1e-4;
 
+/// Largest distance across the normal of the two points of a contact, relative to the largest
+/// coordinate. parry's relative tolerance is 5e-8.
+const REALISED: Real = 1e-6;
+
 /// A link and another convex shape, in either order.
 pub(super) struct ConvexPair<'a, L> {
     inner: &'a L,
@@ -127,7 +131,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             Some(contact) if self.is_plain(contact.normal1, contact.dist) => Some(contact),
             Some(contact) => self.least(contact)?,
             None => self.contact_of_closest()?,
-        };
+        }
+        .map(|contact| self.realised(contact));
         // The distance, which other iterations compute, decides whether it is within the
         // prediction.
         Ok(match found {
@@ -140,6 +145,23 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             }
             _ => None,
         })
+    }
+
+    /// Returns the contact of a pair that is apart with points that are as far apart as it states.
+    ///
+    /// parry's contact is the distance along its normal of two points, which may lie far apart
+    /// across it: EPA and a GJK that stops early return such points for a face and an edge that are
+    /// level within rounding. `gap(normal)` is then the distance, if the two touch after a
+    /// translation by it: alternating projections find the place.
+    fn realised(&self, contact: Contact) -> Contact {
+        let way = self.pos12 * contact.point2 - contact.point1;
+        let aside = (way - contact.normal1 * contact.dist).length();
+        let most = REALISED * largest(self.pos12, self.shapes[0], self.shapes[1]);
+        if contact.dist <= 0.0 || aside <= most {
+            return contact;
+        }
+        let best = (self.gap(contact.normal1), contact.normal1);
+        self.report(best, self.touching(&self.placed_convex(), best))
     }
 
     /// Returns the contact of an overlap, or of a pair whose normal is not confirmed, or a better
@@ -329,12 +351,7 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         if contact.dist > 0.0 {
             return contact;
         }
-        let (link, other, pose) = if self.link_is_first {
-            (*self.link, self.shapes[1], *self.pos12)
-        } else {
-            (self.link.transformed(self.pos12), self.shapes[0], Pose::IDENTITY)
-        };
-        let placed = PlacedConvex { link, axis: unit(link.end() - link.start()), other, pose };
+        let placed = self.placed_convex();
         let found = (self.gap(contact.normal1), contact.normal1);
         let mut best = found;
         let mut consider = |n: Vector| best = self.wider(best, n);
@@ -354,6 +371,16 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
             self.touching(&placed, best)
         };
         self.report(best, near)
+    }
+
+    /// Returns the link and the other shape in the frame of the pair.
+    fn placed_convex(&self) -> PlacedConvex<'_> {
+        let (link, other, pose) = if self.link_is_first {
+            (*self.link, self.shapes[1], *self.pos12)
+        } else {
+            (self.link.transformed(self.pos12), self.shapes[0], Pose::IDENTITY)
+        };
+        PlacedConvex { link, axis: unit(link.end() - link.start()), other, pose }
     }
 
     fn wider(&self, best: Gap, normal: Vector) -> Gap {

@@ -13,7 +13,7 @@ const PREDICTIONS: [Real; 9] = [-0.2, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.02, 0.5,
 
 /// Placements of each kind.
 fn placements() -> usize {
-    rounds(400).max(100)
+    rounds(1000).max(100)
 }
 
 /// The allowed difference between two queries of the same pair: rounding, or the tolerance of
