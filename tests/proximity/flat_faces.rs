@@ -3,8 +3,13 @@
 
 use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{BvhSearch, Decision, Scene, SceneMotionContact, SelfQuery};
-use parry_continuum::{BendingMotion, BendingSection, Chain, LinearMotion, Motion, Tube};
+use parry_continuum::parry::shape::Cone;
+use parry_continuum::proximity::{
+    BvhSearch, Decision, Proximity, RobotPair, Scene, SceneMotionContact, SelfQuery,
+};
+use parry_continuum::{
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, Tube,
+};
 
 /// Two disks of radius 5 on a thin backbone of length 4 that bends by `theta`, as a chain.
 fn disks(theta: f64, chords: u32, thickness: f64) -> Chain {
@@ -116,4 +121,74 @@ fn a_flat_tip_meets_a_wall_at_margin_0() {
         tilted += usize::from(tilt >= 1e-6);
     }
     assert!(level >= rounds(150) && tilted >= rounds(150), "{level} {tilted}");
+}
+
+/// A cylinder that moves to a cone's base in every way in which rims and faces stay level within
+/// rounding. Between the times of an answer the two are within the resolution.
+#[test]
+fn level_rims_meet_at_margin_0() {
+    let (mut random, mut narrow, mut sliding) = (Random::new(83), 0, 0);
+    for round in 0..rounds(1200) {
+        let resolution = [1e-3, 1e-5][random.below(2) as usize];
+        let placed = if random.below(3) == 0 { Pose::IDENTITY } else { random.pose(10.0) };
+        let tilt = [0.0, 1e-15, 1e-12, 1e-6, 1e-3][random.below(5) as usize];
+        let radius = random.between(0.3, 2.0);
+        let [base, high] = [random.between(0.3, 2.0), random.between(1.0, 4.0)];
+        let steps = 1 + random.below(12);
+        let share = |k: u32| f64::from(k) / f64::from(steps);
+        let points: Vec<_> = (0..=steps).map(|k| Vector::Z * (high * share(k))).collect();
+        let radii: Vec<_> = (0..steps).map(|k| base * (1.0 - share(k))).collect();
+        let cone = Chain::cylinders(&points, &radii).unwrap();
+        let angle = random.between(0.0, 6.0);
+        let out = Vector::new(angle.cos(), angle.sin(), 0.0);
+        let up = Vector::Z + out.any_orthonormal_vector() * tilt;
+        let (way, axis) = match random.below(4) {
+            // Beside the cone, both on one plane; sliding below it; obliquely, rim to rim.
+            0 => (-out * 2.0, up),
+            1 => (-out * 2.0, -up),
+            2 => (-out * 2.0 - Vector::Z, up),
+            _ => (Vector::Z * 2.0, -up),
+        };
+        let beside = if way.x == 0.0 && way.y == 0.0 {
+            out * (random.between(0.0, 0.9) * (radius + base))
+        } else {
+            out * (radius + base)
+        };
+        let at = beside - way * 0.5;
+        let ends = |t: f64| [at + way * t, at + way * t + axis * 3.0].map(|point| placed * point);
+        let motion = LinearMotion::chain(&ends(0.0), &ends(1.0), &[radius]).unwrap();
+        let shape = |t: f64| Chain::cylinders(&ends(t), &[radius]).unwrap();
+        let [found, within] = if random.below(2) == 0 {
+            let rest = RigidMotion::new(Tube::from(&cone), [placed; 2]).unwrap();
+            let found = RobotPair::new().time_of_contact(&motion, &rest, 0.0, resolution).unwrap();
+            let distance = |t: f64| {
+                let pair = RobotPair::new().minimum(&shape(t), &Pose::IDENTITY, &cone, &placed);
+                pair.unwrap().distance
+            };
+            let [from, to] = found.interval;
+            let inner = [0.1, 0.5, 0.9].map(|share| distance(from + share * (to - from)));
+            [found.interval, inner.into_iter().fold([0.0; 2], |[a, b], d| [a.max(d), b])]
+        } else {
+            let (corners, triangles) = Cone::new(0.5 * high, base).to_trimesh(24);
+            let upright = placed * Pose::rotation(Vector::X * std::f64::consts::FRAC_PI_2);
+            let lift = Vector::Y * (0.5 * high);
+            let corners: Vec<_> = corners.iter().map(|v| upright * (*v + lift)).collect();
+            let mut search = BvhSearch::from_triangles(&corners, &triangles).unwrap();
+            let found = search.time_of_contact(&motion, 0.0, resolution).unwrap();
+            let [from, to] = found.interval;
+            let mut distance =
+                |t: f64| search.minimum(&shape(t), &Pose::IDENTITY).unwrap().distance;
+            let inner = [0.1, 0.5, 0.9].map(|share| distance(from + share * (to - from)));
+            [found.interval, inner.into_iter().fold([0.0; 2], |[a, b], d| [a.max(d), b])]
+        };
+        let width = (found[1] - found[0]) * way.length();
+        if width <= 2.0 * resolution {
+            narrow += 1;
+            continue;
+        }
+        // Faces that slide on one another: no earlier place is farther than the resolution.
+        sliding += 1;
+        assert!(within[0] <= resolution, "{round} {tilt}: {found:?} {within:?}");
+    }
+    assert!(narrow >= rounds(800) && sliding >= rounds(10), "{narrow} {sliding}");
 }
