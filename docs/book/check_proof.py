@@ -13,9 +13,9 @@ import re
 import struct
 import sys
 from fractions import Fraction
-from math import isqrt
+from math import gcd, isqrt
 
-NAMES = {"chain": [], "tube": ["curvature", "length", "off"]}
+NAMES = {"chain": [], "tube": ["curvature", "length", "off", "tilt"]}
 NAMES["motion"] = NAMES["tube"] + ["speed", "turn"]
 
 # OBJ statements that neither add nor move a triangle.
@@ -25,7 +25,8 @@ CORNER = re.compile("([1-9][0-9]{0,8})(/[1-9][0-9]{0,8}|/([1-9][0-9]{0,8})?/[1-9
 NOT_COVERED = """Not covered, for you to compare:
   - the side of the wall: the robot may be on either side of a surface, or outside of a closed one
   - the premises: that the mesh is your wall, and that these lines describe all of your robot.
-Caps are for start and end: f is the disc across the centreline, r the half ball beyond that disc.
+Caps are for start and end: f is the disc across the centreline, d the same in a stated direction,
+r the half ball beyond that disc.
 Between two round caps the centreline has whole balls. The premises:"""
 
 
@@ -186,8 +187,11 @@ class Shape:
         self.pieces = []
         for _ in range(count):
             radius, caps = words.not_negative(), words.next()
-            need(re.fullmatch("[fr][fr]", caps), f"{shown(caps)} are no caps")
+            known = "[fr][fr]" if kind == "chain" else "[fr][fr]|d[fr]|[fr]d"
+            need(re.fullmatch(known, caps), f"{shown(caps)} are no caps")
             rest = {name: words.not_negative() for name in NAMES[kind]}
+            if "d" in caps:
+                rest["direction"] = tuple(words.number() for _ in range(3))
             self.pieces.append((radius, caps, rest))
         words.expect("steps")
         self.steps = [words.next() for _ in range(words.count())]
@@ -240,23 +244,44 @@ class Shape:
         around all of it must be free, in whole numbers. src/query/proof/mod.rs derives why such
         a body contains the piece."""
         points, bodies = [whole(point, scale) for point in self.points], []
-        for (r, caps, rest), start, end in zip(self.pieces, points, points[1:]):
-            values = {name: Fraction(value) for name, value in rest.items()}
-            named = (values.get(name, Fraction(0)) for name in NAMES["motion"])
-            bend, length, off, speed, turn = named
-            square = sum((b - a) ** 2 for a, b in zip(start, end))
+        for (r, caps, rest), *ends in zip(self.pieces, points, points[1:]):
+            named = (Fraction(rest.get(name, 0)) for name in NAMES["motion"])
+            r, (bend, length, off, tilt, speed, turn) = Fraction(r), named
+            square = sum((b - a) ** 2 for a, b in zip(*ends))
             is_long = not rest or square <= ((length + 2 * off) * scale) ** 2
             need(is_long, f"a piece of length {rest.get('length')} does not reach its two points")
-            radius = Fraction(r) + bend * length**2 / 8 + off
-            around = margin + self.half * speed
-            flat = [cap == "f" for cap in caps]
+            flat, chord = [cap != "r" for cap in caps], Fraction(isqrt(square), scale)
+            radius, around = r + bend * length**2 / 8 + off, margin + self.half * speed
             if any(flat):
-                chord = Fraction(isqrt(square), scale)
-                need(chord > 2 * off, "a flat end has no certain direction")
+                around += self.half * turn * r
+            if "d" in caps:
+                need(bend * r < 1, "a piece bends within its radius at a flat end")
+                need(bend * length + tilt <= Fraction(3, 2), "a piece at a flat end bends too much")
+                radius = r + bend * length**2 / 2 + tilt * length + off
+                at, back = caps.index("d"), length
+                if flat[1 - at]:
+                    back += r * (bend * length + tilt) + off
+                way = whole(rest["direction"], scale)
+                need(any(way), "a stated direction is none")
+                # In whole multiples of a vector along the direction, at most 1 unit too long.
+                way = tuple(x // gcd(*way) for x in way)
+                unit = max(isqrt(dot(way, way)), 1)
+                ahead, back = (up(x * scale / unit) for x in (r * tilt + off, back))
+                tip = ends[at]
+                ends[at] = tuple(x + ahead * w for x, w in zip(tip, way))
+                ends[1 - at] = tuple(x - back * w for x, w in zip(tip, way))
+            elif any(flat) and rest:
+                need(chord > 4 * off, "a flat end has no certain direction")
                 need(bend * length <= 1, "a piece with a flat end bends too much")
-                around += self.half * turn * Fraction(r) + Fraction(r) * bend * length / 2
-                around += off + radius * off * Fraction(22, 7) / chord
-            bodies.append((start, end, flat, up(radius * scale), up(around * scale)))
+                turned = bend * length / 2 + tilt + Fraction(22, 7) * off / chord
+                # In shares of the chord, whose coordinates are multiples of 2^64.
+                share = up((r * turned + off) / chord * 2**64)
+                axis = tuple((b - a) >> 64 for a, b in zip(*ends))
+                for end, sign in ((0, -1), (1, 1)):
+                    if flat[end]:
+                        ends[end] = tuple(x + sign * share * w for x, w in zip(ends[end], axis))
+            need(not any(flat) or ends[0] != ends[1], "a flat end has no certain direction")
+            bodies.append((*ends, flat, up(radius * scale), up(around * scale)))
         return bodies
 
 
@@ -327,7 +352,7 @@ def main(mesh_path, proof_path):
         mesh = Mesh(file.read())
     with open(proof_path, "rb") as file:
         words = Words(file.read())
-    words.expect("proof of clearance 1 mesh")
+    words.expect("proof of clearance 2 mesh")
     counts = [words.count(), words.count()]
     is_same = counts == [len(mesh.vertices), len(mesh.triangles)]
     need(is_same, "the proof is about another mesh: it has other counts")
@@ -353,6 +378,8 @@ def main(mesh_path, proof_path):
     doubles = [x for vertex in mesh.vertices for x in vertex] + [margin]
     doubles += [x for shape in shapes for point in shape.points for x in point]
     doubles += [piece[0] for shape in shapes for piece in shape.pieces]
+    rests = [rest for shape in shapes for *_, rest in shape.pieces]
+    doubles += [x for rest in rests for x in rest.get("direction", ())]
     # Coordinates become whole numbers so, and what is rounded up to one is rounded by little.
     scale = max(x.as_integer_ratio()[1] for x in doubles) * 2**64
     mesh.whole = [whole(vertex, scale) for vertex in mesh.vertices]

@@ -9,7 +9,7 @@ use continuum_testing::{Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
-use parry_continuum::proximity::{BvhSearch, Proof, Proximity};
+use parry_continuum::proximity::{BvhSearch, Decision, Proof, Proximity};
 use parry_continuum::{Cap, Chain, LinearMotion, RigidMotion, Tube, TubeSection};
 use std::fs;
 use std::path::PathBuf;
@@ -272,7 +272,7 @@ fn what_was_tampered_with_is_refused() {
     for (starts, from, to) in [
         ("mesh", " ", " 1"),
         ("mesh", "mesh", "mush"),
-        ("proof", "1", "2"),
+        ("proof", "2", "1"),
         ("margin", "margin ", "margin -"),
         ("margin", "margin 0", "margin nan"),
         ("margin", "margin ", "margin 1e999"),
@@ -395,11 +395,78 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     assert!(shorter > rounds(40) && said.len() == 4 * shorter, "{shorter}");
 }
 
-/// Pieces as the page defines them, with the largest bend, length and offset that it allows, beside
-/// a triangle: an accepted proof is true of every disc and of the half balls beyond round ends.
+/// A flat end before a wall across it is proven as near as `clears_tube` decides: with a stated
+/// error or turn, a sample taken twice, radii that differ by rounding, and on bent curves.
+#[test]
+fn flat_ends_are_proven_as_they_are_decided() {
+    let (mut checks, mut sharp) = (Checks::new("flat-ends"), 0);
+    let mut prove = |tube: &Tube, tip: Vector, along: Vector, gap: f64, resolution: f64| {
+        let side = along.any_orthonormal_vector();
+        let centre = tip + along * gap;
+        let corners = [0.0, 2.1, 4.2].map(|angle| {
+            centre + (side * f64::cos(angle) + along.cross(side) * f64::sin(angle)) * 30.0
+        });
+        let mut search = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
+        let decided = search.clears_tube(tube, &Pose::IDENTITY, 0.0, resolution);
+        assert_eq!(decided, Ok(Decision::Clear), "{gap}");
+        let proof = search.prove_tube(tube, &Pose::IDENTITY, 0.0, resolution).unwrap();
+        let proof = proof.unwrap_or_else(|| panic!("{gap}: no proof"));
+        checks.add(&obj(&search), &proof.to_string());
+    };
+    // A rod, nearer to the wall than its radius.
+    let rod: Vec<_> = (0..=20).map(|z| Vector::Z * f64::from(z)).collect();
+    let tangents = Some([Vector::Z; 2]);
+    let sampled = |points: &[Vector], radius: &dyn Fn(usize) -> f64| {
+        let radii: Vec<_> = (1..points.len()).map(radius).collect();
+        Tube::from_samples(points, &radii, tangents).unwrap()
+    };
+    let plain = || sampled(&rod, &|_| 1.0);
+    let mut twice = rod.clone();
+    twice.insert(9, rod[8] + Vector::X * 1e-5);
+    let mut again = rod.clone();
+    again.insert(9, rod[8]);
+    for tube in [
+        plain(),
+        plain().with_error(1e-9).unwrap(),
+        plain().with_turn(1e-9).unwrap(),
+        plain().with_error(0.05).unwrap().with_turn(0.05).unwrap(),
+        sampled(&twice, &|_| 1.0),
+        sampled(&again, &|_| 1.0),
+        sampled(&rod, &|k| if k == 7 { 1.0 + 1e-12 } else { 1.0 }),
+    ] {
+        prove(&tube, Vector::Z * 20.0, Vector::Z, 0.9, 1e-3);
+    }
+    // Arcs with their tangents, in random frames: nearer than radius x curvature x spacing / 2.
+    for seed in 0..rounds(60) {
+        let random = &mut Random::new(seed);
+        let pose = random.pose(5.0);
+        let curvature = random.between(0.01, 0.1);
+        // Thinner tubes are bounded along their chords, and no nearer than that is decided.
+        let radius = random.between(0.8, 2.0);
+        let at = |s: f64| {
+            let (sin, cos) = (curvature * s).sin_cos();
+            let along = pose.rotation * Vector::new(sin, 0.0, cos);
+            (pose * Vector::new((1.0 - cos) / curvature, 0.0, sin / curvature), along)
+        };
+        let points: Vec<_> = (0..=20).map(|k| at(f64::from(k)).0).collect();
+        let ((_, start), (tip, along)) = (at(0.0), at(20.0));
+        let tube = Tube::with_constant_radius(&points, radius, Some([start, along])).unwrap();
+        let gap = 10_f64.powf(random.between(-6.0, -3.0));
+        sharp += usize::from(gap < 0.5 * radius * curvature);
+        prove(&tube, tip, along, gap, 0.1 * gap);
+    }
+    assert!(sharp > rounds(50), "{sharp}");
+    let Some(said) = checks.run() else { return };
+    assert!(said.iter().all(|said| said.is_yes), "{said:?}");
+}
+
+/// Pieces as the page defines them, with the largest bend, length, offset and tilt that it allows,
+/// beside a triangle: an accepted proof is true of every disc and of the half balls beyond round
+/// ends.
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
-    let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
+    let (mut checks, mut nearest, mut flats, mut directions) =
+        (Checks::new("pieces"), Vec::new(), 0, 0);
     for seed in 0..rounds(100) {
         let random = &mut Random::new(seed);
         let pose = random.pose(2.0);
@@ -407,8 +474,13 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         let curvature = random.between(0.0, 1.0) / length * f64::from(random.below(2));
         let radius = random.between(0.1, 0.95) * (1.0 / curvature.max(0.1)).min(3.0);
         let off = [0.0, 0.02 * length][random.below(2) as usize];
-        let caps =
-            [["ff", "fr", "rf"][random.below(3) as usize], "rr"][random.below(4) as usize / 3];
+        let mut caps = [["ff", "fr", "rf"][random.below(3) as usize], "rr"]
+            [random.below(4) as usize / 3]
+            .to_owned();
+        // With a stated direction, the direction takes half of the tilt and the discs the rest.
+        let is_stated = caps != "rr" && random.below(2) == 0;
+        let tilt = [0.0, 0.03][random.below(2) as usize];
+        let of_discs = if is_stated { 0.499 * tilt } else { 0.999 * tilt };
         // An arc whose ends are off by as much as is stated.
         let at = |s: f64| {
             let (sin, cos) = (curvature * s).sin_cos();
@@ -434,6 +506,20 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
             corner + 0.01 * radius * random.point(),
         ];
         let (_, mesh, name) = triangle_and_its_name(corners);
+        let mut direction = String::new();
+        if is_stated {
+            let end = caps.rfind('f').unwrap();
+            caps.replace_range(end..=end, "d");
+            let (_, along) = at([0.0, length][end]);
+            let outward = if end == 0 { -along } else { along };
+            let off = outward.cross(random.direction()).normalize() * f64::tan(of_discs);
+            let Vector { x, y, z } = (outward + off) * random.between(0.1, 9.0);
+            direction = format!(" {x:?} {y:?} {z:?}");
+        }
+        let tilted = |along: Vector, random: &mut Random| {
+            let off = along.cross(random.direction()).normalize() * f64::tan(of_discs);
+            (along + off).normalize()
+        };
         // How far the piece is, by its discs' rims and centres and its ends' directions.
         let mut least = f64::INFINITY;
         let mut visit = |point: Vector| {
@@ -443,6 +529,7 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         };
         for k in 0..=100 {
             let (centre, along) = at(length * f64::from(k) / 100.0);
+            let along = tilted(along, random);
             let way = corner - centre;
             let across = way - along * way.dot(along);
             visit(centre + across * (radius / across.length()).min(1.0));
@@ -450,14 +537,16 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         for (end, s) in [0.0, length].into_iter().enumerate() {
             let (centre, along) = at(s);
             let outward = if end == 0 { -along } else { along };
+            let outward = tilted(outward, random);
             let way = corner - centre;
             let is_round = &caps[end..=end] == "r";
             if is_round && (caps == "rr" || way.dot(outward) > 0.0) {
                 visit(centre + way * (radius / way.length()).min(1.0));
             }
         }
+        let length = length * (1.0 + 1e-12);
         let stated_piece =
-            format!("{radius:?} {caps} {curvature:?} {:?} {off:?}", length * (1.0 + 1e-12));
+            format!("{radius:?} {caps} {curvature:?} {length:?} {off:?} {tilt:?}{direction}");
         for share in [0.2, 0.6, 0.9, 1.0, 1.1] {
             let margin = share * least;
             let way = (corner - centre.lerp(0.5 * (stated[0] + stated[1]), random.unit()))
@@ -469,25 +558,28 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
                 checks.add(
                     &mesh,
                     &format!(
-                        "proof of clearance 1\n{name}\nmargin {margin:?}\ntube 1\nshape 1\n{points}\n{stated_piece}\nsteps 1\n\
+                        "proof of clearance 2\n{name}\nmargin {margin:?}\ntube 1\nshape 1\n{points}\n{stated_piece}\nsteps 1\n\
                          {a},{b},{c}\nend\n"
                     ),
                 );
-                nearest.push((margin, least, seed));
+                nearest.push((margin, least, seed, is_stated));
             }
         }
         flats += usize::from(caps != "rr");
+        directions += usize::from(is_stated);
     }
     let Some(said) = checks.run() else { return };
-    let mut believed = 0;
-    for ((margin, least, seed), said) in nearest.iter().zip(&said) {
+    let (mut believed, mut by_direction) = (0, 0);
+    for ((margin, least, seed, is_stated), said) in nearest.iter().zip(&said) {
         assert!(
             !said.is_yes || margin < &(least * (1.0 + 1e-9)),
             "{seed}: {margin} of {least}, {said:?}"
         );
         believed += usize::from(said.is_yes);
+        by_direction += usize::from(said.is_yes && *is_stated);
     }
     assert!(believed > rounds(75) && flats > rounds(50), "{believed} {flats}");
+    assert!(directions > rounds(20) && by_direction > rounds(20), "{directions} {by_direction}");
 }
 
 /// Files that are not proofs or not meshes of triangles: one line refuses them, and its quotes are
@@ -597,7 +689,7 @@ fn malformed_files_are_refused() {
         // A line that is there twice, or in another order.
         (&chain, "margin 0.5", "margin 0.5 margin 0.5"),
         (&chain, "margin 0.5", "margin 0.5\nmargin 0.1"),
-        (&chain, "proof of clearance 1", "proof of clearance 1\nproof of clearance 1"),
+        (&chain, "proof of clearance 2", "proof of clearance 2\nproof of clearance 2"),
         (&chain, "mesh 3 1 ", "mesh 3 1 mesh 3 1 "),
         (&chain, "mesh 3 1 ", "mesh 3 -1 "),
         (&chain, "mesh 3 1 ", "mesh 3 1_0 "),
@@ -627,6 +719,9 @@ fn malformed_files_are_refused() {
         (&tube, " 0.0 1.0", " 0.0 0.9"),
         (&tube, " 0.0 1.0", " 1.1 1.0"),
         (&tube, " 0.0 1.0", " -0.1 1.0"),
+        // A stated direction that is missing.
+        (&tube, " f", " d"),
+        (&chain, " f", " d"),
         (&tube, "0.2 0.2 3.0\n", "0.2 0.2 2.0\n"),
         (&motion, "shape 0.0 ", "shape 0.0 0.0 "),
     ] {
@@ -638,10 +733,22 @@ fn malformed_files_are_refused() {
         wrong.push((mesh.clone(), text.to_owned()));
         wrong.push((text.to_owned(), chain.clone()));
     }
+    // A stated direction that is right, none, at both ends, or into the piece.
+    for (caps, direction) in
+        [("dr", "0.0 0.0 -3.0"), ("dr", "0.0 0.0 0.0"), ("dd", "0 0 -1"), ("dr", "0 0 1")]
+    {
+        let lines = tube.lines().map(|line| match line.split_once(" fr ") {
+            Some((radius, rest)) => format!("{radius} {caps} {rest} {direction}\n"),
+            None => format!("{line}\n"),
+        });
+        let is_right = direction == "0.0 0.0 -3.0";
+        (if is_right { &mut right } else { &mut wrong }).push((mesh.clone(), lines.collect()));
+    }
+
     // A motion that exceeds its stated speed between two shapes, at the base or at the tip.
     let slow = motion.lines().map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
-        [radius, caps, curvature, length, off, _, turn] => {
-            format!("{radius} {caps} {curvature} {length} {off} 0.0 {turn}\n")
+        [radius, caps, curvature, length, off, tilt, _, turn] => {
+            format!("{radius} {caps} {curvature} {length} {off} {tilt} 0.0 {turn}\n")
         }
         _ => format!("{line}\n"),
     });
@@ -739,7 +846,9 @@ fn a_motion_whose_parts_jump_is_refused() {
         let mut text = format!("shape {:?} {:?} {}\n", times[0], times[1], radii.len());
         points.iter().for_each(|[y, z]| text += &format!("0.0 {y:?} {z:?}\n"));
         // At most 10.5 long, and 0.125 further after a quarter of the time.
-        radii.iter().for_each(|radius| text += &format!("{radius:?} rr 0.0 10.5 0.0 0.5 0.0\n"));
+        radii
+            .iter()
+            .for_each(|radius| text += &format!("{radius:?} rr 0.0 10.5 0.0 0.0 0.5 0.0\n"));
         text + "steps 1\n0,0,1\n"
     };
     let first = [[0.0, 0.0], [0.0, 10.0], [0.0, 20.0]];
@@ -831,10 +940,7 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     let times: Vec<_> = good.lines().filter(|line| line.starts_with("shape ")).collect();
     let faster = with_line(&good, "0.5 ", |line| {
         let words: Vec<_> = line.split(' ').collect();
-        format!(
-            "{} {} {} {} {} 1000.0 {}",
-            words[0], words[1], words[2], words[3], words[4], words[6]
-        )
+        [&words[..6], &["1000.0"], &words[7..]].concat().join(" ")
     });
     let late = good.replacen(times[0], &times[0].replacen(" 0.0 ", " 0.0078125 ", 1), 1);
     let last = times[times.len() - 1];

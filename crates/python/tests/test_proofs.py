@@ -151,7 +151,7 @@ def moved() -> Mesh:
     [
         (WALL, None, "proof.txt", "`proof` is None: the margin is not kept", "bad_type"),
         (WALL, 3, "proof.txt", "`proof` is no proof", "bad_type"),
-        (WALL, "proof of clearance 1 mesh", "proof.txt", "`proof` is no proof", "bad_type"),
+        (WALL, "proof of clearance 2 mesh", "proof.txt", "`proof` is no proof", "bad_type"),
         (Mesh(VERTICES, FACES[::-1]), ..., "proof.txt", "about another mesh", "answer_does_not_fit"),
         (moved(), ..., "proof.txt", "the mesh has moved", "answer_does_not_fit"),
         (WALL, ..., "proof.obj", "proof.obj is where the mesh goes", "file"),

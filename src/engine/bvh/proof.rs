@@ -45,7 +45,7 @@ impl BvhSearch {
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
     /// let proof = search.prove(&robot, &Pose::IDENTITY, 1.0)?.ok_or("not clear")?;
-    /// assert!(proof.planes() < 100 && proof.to_string().starts_with("proof of clearance 1\n"));
+    /// assert!(proof.planes() < 100 && proof.to_string().starts_with("proof of clearance 2\n"));
     /// // std::fs::write("proof.txt", proof.to_string())?;
     /// assert_eq!(search.prove(&robot, &Pose::IDENTITY, 6.0)?, None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

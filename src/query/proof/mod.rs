@@ -9,7 +9,6 @@
 //! - A *group* is a set of triangles, L the least q . v over the corners v of the group.
 //!   So q . x >= L on all its triangles, which are hulls of their corners. A lower L is allowed:
 //!   the checker tries the box of the group first.
-//! - h is half of a motion's interval, R the radius of a body's ends.
 //!
 //! # Claim
 //! If the checker says yes and the premises hold, every point of the robot, at every time, is
@@ -35,40 +34,51 @@
 //!
 //! which contains only squares: rational numbers, and whole ones if multiplied by w^2.
 //!
-//! **A piece lies in its body.** With the premises `radius`, `curvature`, `length`, `off`, `speed`
-//! and `turn` of the piece,
+//! **A piece lies in its body.** Let k = `curvature`, l = `length`, r = `radius`, h = half of the
+//! interval. Let c be a curve by arc length with curvature at most k and length at most l. Its ends
+//! are within `off_1` of the two points. Each point of the piece is within `off_2` of a point of a
+//! disc or ball of radius r around a c(s), and `off_1 + off_2 <= off`. With a stated direction the
+//! disc at c(s) and c'(s) differ from it by at most `tilt` + k s; without one each disc differs by
+//! at most `tilt` from the plane across c'(s). The body has the radius R and e of free space:
 //!
 //! ```text
-//! R = radius + curvature length^2 / 8 + off,       e = margin + h speed.
+//! round ends        R = r + k l^2 / 8 + off              e = margin + h speed
+//! flat, by chord    R = r + k l^2 / 8 + off              e = margin + h speed + h turn r
+//! flat, stated      R = r + k l^2 / 2 + tilt l + off     e = margin + h speed + h turn r
 //! ```
 //!
-//! If an end is flat, e grows by
+//! *Theorem 1 (the sides).* Each c(s) is within k l^2 / 8 of the point on its chord at the same
+//! share. *Proof.* The difference vanishes at both ends, and its second derivative is at most k, so
+//! it is at most k s (l - s) / 2. The ends of c add at most `off_1`, the points of the piece
+//! `off_2`. So all balls and discs lie in the capsule of radius R around the line between the
+//! points.
+//!
+//! *Theorem 2 (flat ends by the chord).* If k l <= 1 and `4 off < |chord|`, a flat end is the disc
+//! of radius R across the chord that is beyond its point by
 //!
 //! ```text
-//! h turn radius + radius curvature length / 2 + off + (22 / 7) R off / |chord|.
+//! r (k l / 2 + tilt + (22 / 7) off / |chord|) + off.
 //! ```
 //!
-//! *Theorem 1 (round ends).* Let c be a curve by arc length with curvature at most k (a bound on
-//! how fast its direction turns) and length at most l. Each c(s) is within k l^2 / 8 of the point
-//! on its chord at the same share. *Proof.* The difference vanishes at both ends, and its second
-//! derivative is at most k, so it is at most k s (l - s) / 2. An offset adds at most `off`: of the
-//! centreline from c, or of its ends from the points. So the centreline is within R - radius of the
-//! line between the points, and all balls and discs lie in the capsule of radius R.
+//! *Proof.* Seen from c(s), the parts of lengths p and q, p + q = l, advance along its direction by
+//! at least (sin kp + sin kq) / k, and across it by at most (2 - cos kp - cos kq) / k. The quotient
+//! is at most tan(k l / 2). So c'(s) differs from the true chord by at most k l / 2. The true chord
+//! is turned by an angle of sine at most 2 off / |chord| <= 1/2, so by at most (22 / 7) off /
+//! |chord|. The sum of both angles is below pi / 2, so c advances along the given chord, and no
+//! c(s) is farther than `off_1` beyond the points. A disc reaches beyond c(s) by at most r times
+//! the sine of the sum and `tilt`. The half ball at a round end reaches back no farther: of its
+//! points c(l) + v with v . c'(l) >= 0, none is farther than that behind the plane across the chord
+//! there. So the part of the capsule that does not lie farther beyond a flat end contains the
+//! piece.
 //!
-//! *Theorem 2 (flat ends).* If k l <= 1, the direction of the curve is everywhere within the angle
-//! k l / 2 of its chord. *Proof.* Seen from c(s), the parts of lengths p and q, p + q = l, advance
-//! along its direction by at least (sin kp + sin kq) / k, and across it by at most (2 - cos kp -
-//! cos kq) / k. The quotient is at most tan(k l / 2). So c(s) advances along the chord, and a disc
-//! reaches beyond the planes across the chord at its ends by at most radius sin(k l / 2). The half
-//! ball at a round end reaches back no farther: of its points c(l) + v with v . c'(l) >= 0, none is
-//! farther than radius sin(k l / 2) behind the plane across the chord there. So the part of the
-//! capsule that does not lie farther beyond a flat end contains the piece: the piece is within
-//! radius k l / 2 of the hull whose flat ends are discs and whose round ends are half balls.
-//!
-//! *Theorem 3 (offset ends).* If the ends are within `off` of the points, and `off` is less than
-//! half of the chord, the true chord is turned by an angle whose sine is at most 2 off / |chord|,
-//! so by at most pi off / |chord|. Moving each point by at most off + R pi off / |chord| turns the
-//! hull of the true ends into one around the given ends; and pi < 22 / 7.
+//! *Theorem 3 (a stated direction).* Let one end be flat with the direction T, out of the piece, a
+//! = `tilt`, k r < 1 and k l + a <= 3/2. The body's axis follows T from r a + off ahead of the
+//! point to l behind it, and by r (k l + a) + off more if the other end is flat. *Proof.* c(s) is
+//! at most the integral of sin(k s + a), so k l^2 / 2 + a l, beside the line along T. A point of
+//! its disc is ahead of the end of c by at most r sin(k s + a) minus the integral of cos(k s + a).
+//! The derivative is (k r - 1) cos(k s + a) < 0, so this is largest at s = 0: r sin a. A disc is
+//! behind the end by at most l + r sin(k l + a). A point of the half ball at a round end, beyond l,
+//! is no farther from the axis' end there than R, and otherwise within R of the axis.
 //!
 //! **Motion.** A point of a disc or a half ball is a point of the centreline plus an arm of at most
 //! the radius. The point moves by at most h speed before or after the middle, the arm by h turn
@@ -77,7 +87,8 @@
 //!
 //! # Rounding
 //! Coordinates are whole numbers after multiplication by one power of two; the checker takes 2^64
-//! times that power. Radii and distances e that are not whole then are rounded up.
+//! times that power. Radii, distances e, and ways along an axis that are not whole then are rounded
+//! up.
 
 mod motion_proof;
 mod plane_search;

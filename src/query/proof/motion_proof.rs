@@ -5,7 +5,7 @@
 use super::plane_search::PlaneSearch;
 use super::text::{Kind, MAX_BYTES, PiecePremises, ProvenShape, Shape, size_of};
 use crate::answer::ProximityError;
-use crate::curve::{CapPersistence, Section, Tube};
+use crate::curve::{CapPersistence, CurveBound, Section, Tube};
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, Motion, MotionDrift, SectionSignature, check_speed};
 use crate::refine::{self, PlacedTube};
@@ -107,7 +107,12 @@ pub(crate) fn tube_shape(
         while let Some(place) = waiting.pop() {
             let piece = piece(tube, section, &place, is_moving);
             let mut over = 0.125 * piece.curvature * piece.length * piece.length;
-            if piece.flat != [false; 2] {
+            // Ahead of an inner flat end lies the tube.
+            let is_at_face = piece.flat[0] && place.from == section.first
+                || piece.flat[1] && place.to == section.last;
+            if piece.stated.is_some() {
+                over *= 4.0;
+            } else if is_at_face {
                 over += 0.5 * piece.radius * piece.curvature * piece.length;
             }
             // A NaN piece is kept: no plane separates it.
@@ -139,27 +144,49 @@ fn piece(
     is_moving: bool,
 ) -> PiecePremises {
     let arcs = tube.arcs(place);
-    let known = tube.tube.bound(section, [place.from, place.to]);
+    let CurveBound { curvature, off: known } = tube.tube.bound(section, [place.from, place.to]);
     let length = (arcs[1] - arcs[0]) * section.stretch * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
     // The slack covers the rounding of the points.
-    let off = tube.tube.error() + known.off + tube.slack();
+    let off = tube.tube.error() + known + tube.slack();
     let ends = [place.from, place.to].map(|tick| tube.point(section, tick));
-    let is_straight = known.curvature * length <= 1.0 && 4.0 * off < (ends[1] - ends[0]).length();
-    let is_face = |end: usize| {
-        section.faces[end]
-            .is_some_and(|face| !is_moving || face.persistence == CapPersistence::Always)
-    };
-    // A stated error of place gives no bound on directions.
-    let is_certain = tube.tube.error() == 0.0 && tube.tube.turn().unwrap_or(0.0) == 0.0;
+    let faces = tube
+        .faces(section)
+        .map(|face| face.filter(|face| !is_moving || face.persistence == CapPersistence::Always));
     // Near a face a round end would stick out of it.
     let exposed = tube.exposed(section, arcs);
-    let flat = [0, 1].map(|end| is_straight && is_certain && exposed[end] && is_face(end));
-    PiecePremises {
+    let flat = [0, 1].map(|end| exposed[end] && faces[end].is_some());
+    let round = PiecePremises {
         radius: section.radius,
-        flat,
-        curvature: known.curvature,
+        curvature,
         length,
         off,
         ..PiecePremises::default()
+    };
+    if flat == [false; 2] {
+        return round;
+    }
+    let (radius, bend, turn) =
+        (section.radius, curvature * length, tube.tube.turn().unwrap_or(0.0));
+    // The excess of the body across the chord, and of the better one across a stated direction.
+    let is_at = [place.from == section.first, place.to == section.last];
+    let flat_ends = Real::from(u8::from(flat[0])) + Real::from(u8::from(flat[1]));
+    let is_straight = bend <= 1.0 && 4.0 * off < (ends[1] - ends[0]).length();
+    let by_chord = 0.125 * bend * length + radius * (0.5 * bend + turn) * flat_ends;
+    let by_chord = if is_straight { by_chord } else { Real::INFINITY };
+    let stated = [0, 1].into_iter().filter(|&end| is_at[end] && flat[end]).filter_map(|end| {
+        let face = faces[end]?;
+        // The direction is rounded.
+        let tilt = face.tilt * (1.0 + 8.0 * Real::UNIT_ROUNDOFF) + 16.0 * Real::UNIT_ROUNDOFF;
+        let other = if flat[1 - end] { radius * (bend + tilt) } else { 0.0 };
+        let excess = 0.5 * bend * length + tilt * (length + radius) + other;
+        let is_possible = excess <= by_chord && bend + tilt <= 1.5 && curvature * radius < 1.0;
+        is_possible.then(|| (end, tilt, tube.face(&face).outward))
+    });
+    match stated.reduce(|one, other| if other.1 < one.1 { other } else { one }) {
+        Some((end, tilt, outward)) => {
+            PiecePremises { flat, tilt, stated: Some((end, outward)), ..round }
+        }
+        None if is_straight => PiecePremises { flat, tilt: turn, ..round },
+        None => round,
     }
 }

@@ -17,14 +17,15 @@
 //!   w: the axis of the body.
 //!
 //! # Rounding
-//! 1. The level and a height q . p err by 3 u |q|_1 m each.
+//! 1. The level and a height q . p err by 3 u |q|_1 m each. An end p that was moved along the axis
+//!    errs by at most 18 u m: the way is at most 2 m long and errs by 8 u of itself.
 //! 2. The reach of a ball or disc, and the free space around it, are sums and products of a few
 //!    nonnegative numbers. They err by 12 u of themselves.
 //! 3. For a disc, q x w is divided by |w|. It errs by 8 u |q| |w|, as w is rounded too, so the disc
 //!    reaches farther by 8 u r |q|.
 //! 4. Underflow is less than the least normal number times |q|_1.
 //!
-//! So a body is certainly below a plane if 16 u of each term are added.
+//! So a body is certainly below a plane if 32 u |q|_1 m and 16 u of each other term are added.
 
 use crate::answer::LinkProximity;
 use crate::distance::Scalar;
@@ -283,6 +284,8 @@ fn between_pair(level: Level, mesh: &Mesh, triangle: u32, body: &ProofBody) -> [
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProofBody {
     pub ends: [Vector; 2],
+    /// A vector along the line between the ends. The ends are rounded; discs are across this.
+    pub axis: Vector,
     pub flat: [bool; 2],
     pub radius: Real,
     pub around: Real,
@@ -294,7 +297,7 @@ impl ProofBody {
     fn is_below(&self, q: Vector, level: Real, most: Real) -> bool {
         let slack = 16.0 * f64::UNIT_ROUNDOFF;
         let (length, sum) = (q.length(), q.abs().element_sum());
-        let axis = self.ends[1] - self.ends[0];
+        let axis = self.axis;
         if axis == Vector::ZERO && self.flat != [false; 2] {
             // The checker rejects a disc without a direction.
             return false;
@@ -308,7 +311,7 @@ impl ProofBody {
             let needed =
                 (reach + self.around * length) * (1.0 + slack) + self.radius * length * slack;
             let below = level - q.dot(*end);
-            below > needed + slack * sum * most + sum * Real::MIN_POSITIVE
+            below > needed + 2.0 * slack * sum * most + sum * Real::MIN_POSITIVE
         })
     }
 }

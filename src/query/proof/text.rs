@@ -33,7 +33,7 @@ pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Prove
     };
     let (vertices, triangles) = (mesh.vertices().len(), mesh.len());
     let mut write = |line: std::fmt::Arguments| text.write_fmt(line).unwrap_or_default();
-    write(format_args!("proof of clearance 1\nmesh {vertices} {triangles} {}\n", digest(mesh)));
+    write(format_args!("proof of clearance 2\nmesh {vertices} {triangles} {}\n", digest(mesh)));
     write(format_args!("margin {margin:?}\n{name} {}\n", shapes.len()));
     for parted in shapes {
         planes += write_shape(kind, parted, &mut text).unwrap_or_default();
@@ -62,8 +62,8 @@ impl Write for Size {
 /// The longest text of a proof, in bytes: 16 MiB.
 pub(crate) const MAX_BYTES: usize = 1 << 24;
 
-/// The least bytes of a piece of a tube: three coordinates and four premises, with their blanks.
-pub(crate) const MIN_PIECE_BYTES: usize = 32;
+/// The least bytes of a piece of a tube: three coordinates, five numbers and caps, with blanks.
+pub(crate) const MIN_PIECE_BYTES: usize = 35;
 
 /// Writes a shape and its steps. Returns the number of planes.
 fn write_shape(
@@ -82,14 +82,21 @@ fn write_shape(
         writeln!(text, "{x:?} {y:?} {z:?}")?;
     }
     for piece in &shape.pieces {
-        let PiecePremises { radius, flat, curvature, length, off, speed, turn } = piece;
-        let [start, end] = flat.map(|flat| if flat { 'f' } else { 'r' });
-        write!(text, "{radius:?} {start}{end}")?;
+        let PiecePremises { radius, flat, stated, curvature, length, off, tilt, speed, turn } =
+            piece;
+        let mut caps = flat.map(|flat| if flat { 'f' } else { 'r' });
+        if let Some((end, _)) = stated {
+            caps[*end] = 'd';
+        }
+        write!(text, "{radius:?} {}{}", caps[0], caps[1])?;
         if kind != Kind::Chain {
-            write!(text, " {curvature:?} {length:?} {off:?}")?;
+            write!(text, " {curvature:?} {length:?} {off:?} {tilt:?}")?;
         }
         if kind == Kind::Motion {
             write!(text, " {speed:?} {turn:?}")?;
+        }
+        if let Some((_, Vector { x, y, z })) = stated {
+            write!(text, " {x:?} {y:?} {z:?}")?;
         }
         writeln!(text)?;
     }
@@ -141,8 +148,14 @@ pub(crate) struct PiecePremises {
     pub curvature: Real,
     /// An upper bound on the arc length.
     pub length: Real,
-    /// An upper bound on the distance of the piece's ends from the two points.
+    /// An upper bound on the distance of the curve's ends from the two points, plus that of the
+    /// piece's points from the discs.
     pub off: Real,
+    /// An upper bound on the angle between a disc and the plane across the curve; at a stated
+    /// direction, on its error.
+    pub tilt: Real,
+    /// An end whose direction is known, and this direction, out of the piece.
+    pub stated: Option<(usize, Vector)>,
     /// Upper bounds on the speed of points of the centreline, and on the turn of its direction per
     /// unit of time.
     pub speed: Real,
@@ -174,19 +187,36 @@ impl Shape {
     pub(crate) fn bodies(&self, margin: Real) -> Vec<ProofBody> {
         let half = 0.5 * (self.times[1] - self.times[0]);
         let between = self.points.windows(2).zip(&self.pieces);
-        let body = |(ends, piece): (&[Vector], &PiecePremises)| {
-            let PiecePremises { radius: own, curvature, length, off, .. } = *piece;
-            let radius = own + 0.125 * curvature * length * length + off;
+        let body = |(points, piece): (&[Vector], &PiecePremises)| {
+            let PiecePremises { radius: own, flat, curvature, length, off, tilt, .. } = *piece;
+            let mut ends = [points[0], points[1]];
+            let mut axis = ends[1] - ends[0];
+            let bend = curvature * length;
+            let mut radius = own + 0.125 * bend * length + off;
             let mut around = margin + half * piece.speed;
-            if piece.flat != [false; 2] {
-                let turned = if off > 0.0 {
-                    radius * off * (22.0 / 7.0) / (ends[1] - ends[0]).length()
-                } else {
-                    0.0
-                };
-                around += half * piece.turn * own + 0.5 * own * curvature * length + off + turned;
+            if flat != [false; 2] {
+                around += half * piece.turn * own;
             }
-            ProofBody { ends: [ends[0], ends[1]], flat: piece.flat, radius, around }
+            if let Some((at, outward)) = piece.stated {
+                radius = own + 0.5 * bend * length + tilt * length + off;
+                let other = if flat[1 - at] { own * (bend + tilt) + off } else { 0.0 };
+                let unit = outward / outward.length();
+                let tip = ends[at];
+                ends[at] = tip + unit * (own * tilt + off);
+                ends[1 - at] = tip - unit * (length + other);
+                axis = if at == 0 { -outward } else { outward };
+            } else if flat != [false; 2] {
+                let chord = axis.length();
+                let turned = if off > 0.0 { (22.0 / 7.0) * off / chord } else { 0.0 };
+                let beyond = own * (0.5 * bend + tilt + turned) + off;
+                // The flat ends of a chain are where they are.
+                if beyond > 0.0 {
+                    let beyond = axis * (beyond / chord);
+                    ends[0] -= if flat[0] { beyond } else { Vector::ZERO };
+                    ends[1] += if flat[1] { beyond } else { Vector::ZERO };
+                }
+            }
+            ProofBody { ends, axis, flat, radius, around }
         };
         between.map(body).collect()
     }

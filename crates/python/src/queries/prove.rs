@@ -98,7 +98,7 @@ impl Mesh {
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     /// >>> proof = floor.prove([[0, 0, 2], [1, 0, 2]], 0.5, margin=1)
     /// >>> proof.splitlines()[0]
-    /// 'proof of clearance 1'
+    /// 'proof of clearance 2'
     /// >>> floor.prove([[0, 0, 2], [1, 0, 2]], 0.5, margin=2) is None
     /// True
     /// >>> obj = [f"v {x!r} {y!r} {z!r}" for x, y, z in floor.vertices.tolist()]
