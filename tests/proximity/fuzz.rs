@@ -40,6 +40,23 @@ fn link_triangle() {
     try_bytes("link_triangle", fuzz::link_triangle, 3000);
 }
 
+/// The scenes are of all kinds, clear and not.
+#[test]
+fn aligned() {
+    let (mut random, mut seen) = (Random::new(1), [[0; 2]; fuzz::ALIGNED]);
+    let count = rounds(2400);
+    for _ in 0..count {
+        let bytes: Vec<_> = (0..32).map(|_| random.bits() as u8).collect();
+        if let Some(visited) = fuzz::aligned(&bytes) {
+            seen[visited.kind][usize::from(visited.is_clear)] += 1;
+        }
+    }
+    // Legs are never asked about a margin, floors are always clear.
+    let [legs, others @ .., floors, disks] = seen;
+    assert!(legs[0] >= count / 10 && floors[1] >= count / 10, "{seen:?}");
+    assert!(others.iter().chain([&disks]).flatten().all(|&n| n >= count / 60), "{seen:?}");
+}
+
 #[test]
 fn chain_mesh() {
     try_bytes("chain_mesh", fuzz::chain_mesh, 400);

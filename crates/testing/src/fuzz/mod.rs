@@ -2,6 +2,7 @@
 //! calls the bodies through `fuzz/fuzz_targets` for hours, the test suite through
 //! `tests/proximity/fuzz.rs` briefly.
 
+mod aligned;
 mod chain_mesh;
 mod coherence;
 mod constructors;
@@ -16,6 +17,7 @@ mod source;
 mod touching;
 mod tube;
 
+pub use aligned::{ALIGNED, Visited, aligned};
 pub use chain_mesh::chain_mesh;
 pub use coherence::coherence;
 pub use constructors::constructors;
