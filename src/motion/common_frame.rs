@@ -323,6 +323,7 @@ impl<'a> CarriedMotion<'a> {
 
     /// Upper bounds on the angular speeds of the frames of two robots, seen from the frame in which
     /// their sum is least: the frame at rest, or that of the first robot.
+    #[cfg(feature = "robots")]
     pub(crate) fn least_turning(motions: &[Self; 2]) -> [Real; 2] {
         let at_rest = motions.each_ref().map(Self::turning);
         let [first, second] = motions.each_ref().map(Self::frame);
