@@ -126,12 +126,14 @@ pub(crate) struct PendingPieces<P, B, F> {
     queue: BinaryHeap<Rank>,
     /// Measured pieces that have no halves.
     whole: Vec<PendingPiece<P, B, F>>,
+    /// The initial pieces of a decision.
+    pub begun: Vec<P>,
 }
 
 impl<P, B, F> Default for PendingPieces<P, B, F> {
     fn default() -> Self {
         let (pieces, free, whole) = (Vec::new(), Vec::new(), Vec::new());
-        Self { pieces, free, queue: BinaryHeap::new(), whole }
+        Self { pieces, free, queue: BinaryHeap::new(), whole, begun: Vec::new() }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::tube::from_function;
 use continuum_demo::ventricle;
-use continuum_testing::{Arcs, Random, WarmAndFresh, answered};
+use continuum_testing::{Arcs, Random, WarmAndFresh, answered, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Clearance, Decision, Proximity, RobotPair};
@@ -253,7 +253,7 @@ fn a_contact_is_found_before_a_resolution_is_refused() {
     let [mesh, _] = walls(1.0);
     let mut search = BvhSearch::new(&mesh).unwrap();
     let (mut random, mut touching, mut refused) = (Random::new(5), 0, 0);
-    for _ in 0..180 {
+    for _ in 0..rounds(3000) {
         let curve = arcs(&mut random, 1.0, false);
         // Few samples leave much open.
         let (points, radii) = curve.samples(curve.length() / 8.0, &[]);
@@ -267,7 +267,7 @@ fn a_contact_is_found_before_a_resolution_is_refused() {
         }
         refused += usize::from(decided.is_err());
     }
-    assert!(touching > 60 && refused > 0, "{touching} {refused}");
+    assert!(touching > rounds(1000) && refused > 0, "{touching} {refused}");
 }
 
 #[test]

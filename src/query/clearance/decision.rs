@@ -9,14 +9,16 @@
 //!
 //! A piece is **stuck** if it cannot be divided and its `lower` is below the upper bound by more
 //! than the resolution. A stuck piece is an error. Before the error is reported, all other pieces
-//! are searched for a contact.
+//! are searched for a contact, and then all pieces as `bounds` does: it also measures bodies that
+//! are halved or dropped here, and the point nearest to such a body may lie elsewhere on the tube.
+//! So there is no error where `clearance` finds a contact at that resolution.
 //!
 //! # Claim
 //! A finer resolution never revokes a decision.
 //!
 //! **Proof.** The sequence of divisions does not depend on the resolution (`refine::best_first`).
 
-use super::bounds::{LastPlace, MOST_DIVISIONS, TubeMemory};
+use super::bounds::{BoundsSearch, Hint, LastPlace, MOST_DIVISIONS, TubeMemory};
 use crate::answer::{Decision, ProximityError};
 use crate::refine::{
     Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
@@ -76,6 +78,7 @@ pub(crate) fn clears_pieces<T: Refinable>(
     wanted: Wanted,
 ) -> Result<(Decision, Option<T::Upper>), ProximityError> {
     pieces.clear();
+    pieces.begun.clear();
     let mut search = DecisionSearch {
         tube,
         pieces,
@@ -92,6 +95,7 @@ pub(crate) fn clears_pieces<T: Refinable>(
         let narrow = 0.5 * search.tube.radius(&piece).max(wanted.margin);
         let state = PieceState::Open;
         search.examine(&PendingPiece { piece, lower: 0.0, state, narrow, levels: MOST_LEVELS })?;
+        search.pieces.begun.push(piece);
     }
     search.run()
 }
@@ -146,7 +150,10 @@ impl<T: Refinable> DecisionSearch<'_, T> {
             return Ok((Decision::Contact, Some(best)));
         }
         if self.stuck < Real::INFINITY {
-            self.tube.check_resolved(upper - self.stuck, resolution)?;
+            if let Err(error) = self.tube.check_resolved(upper - self.stuck, resolution) {
+                let found = self.find_by_bounds()?.ok_or(error)?;
+                return Ok((Decision::Contact, Some(found)));
+            }
             self.is_undecided = true;
         }
         Ok((if self.is_undecided { Decision::Undecided } else { Decision::Clear }, None))
@@ -156,6 +163,18 @@ impl<T: Refinable> DecisionSearch<'_, T> {
     /// found.
     fn is_contact(&self) -> bool {
         self.best.is_some_and(|best| best.upper() <= self.wanted.margin)
+    }
+
+    /// Returns the contact that bounds on the clearance find.
+    fn find_by_bounds(self) -> Result<Option<T::Upper>, ProximityError> {
+        let Wanted { margin, resolution, start } = self.wanted;
+        let hint = Hint { upper: self.upper(), triangle: start };
+        self.pieces.clear();
+        let begun = std::mem::take(&mut self.pieces.begun);
+        let mut bounds = BoundsSearch::new(self.tube, self.pieces, hint, resolution);
+        begun.into_iter().for_each(|piece| bounds.begin(piece));
+        bounds.run(Real::INFINITY)?;
+        Ok(bounds.best.filter(|best| best.upper() <= margin))
     }
 
     fn upper(&self) -> Real {
