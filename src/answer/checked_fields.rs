@@ -38,7 +38,7 @@ pub(super) use checked_fields;
 
 /// Rejects fields that no query about a motion returns. The times must be ordered within 0 to 1.
 /// There is a contact exactly for `Contact`, and a reason exactly for `Undecided`.
-#[cfg(feature = "serde-serialize")]
+#[cfg(all(feature = "serde-serialize", feature = "tubes"))]
 pub(super) fn check_motion<C: std::fmt::Debug>(
     decision: super::Decision,
     [from, to]: [parry3d_f64::math::Real; 2],
@@ -68,7 +68,7 @@ pub(super) fn check_distance(distance: parry3d_f64::math::Real) -> Result<(), St
 }
 
 /// Rejects bounds that no query returns: negative, out of order or not finite.
-#[cfg(feature = "serde-serialize")]
+#[cfg(all(feature = "serde-serialize", feature = "tubes"))]
 pub(super) fn check_bounds(
     [lower, upper]: [parry3d_f64::math::Real; 2],
     uncertainty: parry3d_f64::math::Real,
@@ -86,7 +86,7 @@ pub(super) fn check_bounds(
 
 /// Rejects a shape in contact that no query returns: a time outside the motion, or a clearance that
 /// is negative or not finite.
-#[cfg(feature = "serde-serialize")]
+#[cfg(all(feature = "serde-serialize", feature = "tubes"))]
 pub(super) fn check_shape(
     t: parry3d_f64::math::Real,
     upper: parry3d_f64::math::Real,
@@ -100,7 +100,7 @@ pub(super) fn check_shape(
 }
 
 /// Rejects a time outside the motion.
-#[cfg(feature = "serde-serialize")]
+#[cfg(all(feature = "serde-serialize", feature = "tubes"))]
 pub(super) fn check_time(t: parry3d_f64::math::Real) -> Result<(), String> {
     if (0.0..=1.0).contains(&t) {
         Ok(())
