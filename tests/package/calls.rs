@@ -6,27 +6,32 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Calls of other libraries that pages name.
-const FOREIGN: [&str; 21] = [
+const FOREIGN: [&str; 26] = [
     "ccd_enabled",
     "coal::collide",
+    "ContactPair::total_impulse",
     "CollisionRequest::security_margin",
     "CollisionResult::getContact",
     "DistanceResult::nearest_points",
+    "fcl::Box",
     "fcl::BVHModel",
     "fcl::Capsule",
     "fcl::collide",
     "fcl::continuousCollide",
     "fcl::distance",
+    "fcl::InterpMotion",
     "parry::query::distance",
     "query::distance",
     "ActiveCollisionTypes::KINEMATIC_FIXED",
     "contact_softness.natural_frequency",
     "static_contact_softness.natural_frequency",
     "contacts_enabled",
+    "manifolds",
     "map_init",
     "num_max_contacts",
     "ray.init",
     "security_margin",
+    "solver_manifolds",
     "trimesh.load_mesh",
 ];
 
