@@ -87,7 +87,8 @@ fn check(case: &mut Case) {
     let motions = [&first, &second];
     let mut scene = Scene::new();
     for (number, pose) in case.poses.iter().enumerate() {
-        let added = scene.add("structure", case.search.clone(), Some(case.margin));
+        let name = format!("structure {number}");
+        let added = scene.add(name, case.search.clone(), Some(case.margin));
         assert_eq!(added, Ok(number));
         if scene.set_pose(number, pose).is_err() {
             return;
