@@ -402,8 +402,16 @@ fn points_of_filler_triangles_lie_on_them() {
         let from = random.vector(1.0);
         let noise = random.vector(1e-15);
         let triangle = Triangle::new(from, from + way * random.unit() + noise, from + way);
-        let link = random.link();
-        let pose = Pose::new(random.vector(0.5), random.direction());
+        let mut link = random.link();
+        let pose = if random.chance(0.5) {
+            // Along the triangle, above it.
+            let half = 0.5 * link.length() * way.normalize();
+            link = ModifiedCylinder::new(-half, half, link.radius(), link.caps()).unwrap();
+            let above = way.cross(random.direction()).normalize() * link.radius();
+            Pose::from_translation(-above - from - random.between(-1.0, 2.0) * way)
+        } else {
+            Pose::new(random.vector(0.5), random.direction())
+        };
         for (pos12, g1, g2, is_second) in [
             (pose, &link as &dyn Shape, &triangle as &dyn Shape, true),
             (pose.inverse(), &triangle, &link, false),

@@ -5,7 +5,7 @@ use crate::point_ray::ray_near;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
-use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape};
+use parry_continuum::parry::shape::{Capsule, Cylinder, FeatureId, Shape, SupportMap};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 
 /// Along the ray no point before the time of impact is on the link, and the point at that time is.
@@ -273,8 +273,8 @@ fn a_far_origin_loses_no_more_than_its_own_rounding() {
     assert!(hits > 2500, "{hits}");
 }
 
-/// A hit at the end of the time counts, for a chain as for its link: far away, and along an axis in
-/// the face of a link's box.
+/// A hit at the end of the time counts, for a chain as for its link: far away, and along an axis or
+/// in the face of a link's box.
 #[test]
 fn a_chain_is_hit_at_the_end_of_the_time() {
     let mut random = Random::new(49);
@@ -285,8 +285,14 @@ fn a_chain_is_hit_at_the_end_of_the_time() {
         let start = random.vector(1.0) * random.log_between(1.0, 1e6);
         let points = [start, start + axis * random.between(0.1, 2.0)];
         let chain = Chain::cylinders(&points, &[random.between(0.01, 1.0)]).unwrap();
-        let inside = points[0].lerp(points[1], random.unit());
-        let away = if random.chance(0.5) { axis } else { random.direction() };
+        let (inside, away) = if random.chance(0.5) {
+            let face = Vector::AXES[random.index(3)];
+            let away = random.direction();
+            (chain.links()[0].local_support_point_toward(face), away - face * away.dot(face))
+        } else {
+            let away = if random.chance(0.5) { axis } else { random.direction() };
+            (points[0].lerp(points[1], random.unit()), away)
+        };
         let origin = inside + away * random.log_between(1.0, 1e6);
         let ray = Ray::new(origin, (inside - origin) * random.log_between(1e-3, 1e3));
         let link = &chain.links()[0];

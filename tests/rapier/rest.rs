@@ -3,8 +3,10 @@
 
 use crate::drop::{Drop, attitudes, box_ground, bump, field, links, mesh, world};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Cap, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 
 type Ground = (&'static str, fn(Real) -> ColliderBuilder);
 
@@ -214,6 +216,32 @@ fn standing_on_a_flat_cap_does_not_tremble() {
             );
             let speed = drop.world.bodies[drop.body].linvel().length();
             assert!(speed < 1e-3, "{caps:?} on a {}: {speed}", ground.0);
+        }
+    }
+}
+
+/// A round link whose ends lie on grid lines of a mesh without flags rests, awake, as still as
+/// elsewhere.
+#[test]
+fn a_round_link_whose_ends_lie_on_grid_lines_rests() {
+    let grid = crate::drop::grid(1.0, |_, _| 0.0);
+    let grid = TriMesh::new(grid.vertices().to_vec(), grid.indices().to_vec()).unwrap();
+    // Cells are 0.8 wide, with lines at 0.4.
+    for (half, radius) in [(0.4, 0.5), (0.8, 0.5), (1.2, 0.1)] {
+        let half = half * Vector::Y;
+        let link = ModifiedCylinder::capsule(-half, half, radius).unwrap();
+        for turn in [Rot3::from_rotation_x(FRAC_PI_2), Rot3::from_rotation_z(FRAC_PI_2)] {
+            for (x, z) in [(0.0, 0.0), (0.4, 0.0), (0.0, 0.4), (0.4, 0.4)] {
+                let pose = Pose::from_parts(Vector::new(x, radius, z), turn);
+                let ground = ColliderBuilder::new(SharedShape::new(grid.clone()));
+                let mut drop = Drop::new(world(2.0 * radius), ground, SharedShape::new(link), pose);
+                drop.world.bodies[drop.body].activation_mut().normalized_linear_threshold = -1.0;
+                for _ in 0..200 {
+                    drop.world.step();
+                    let speed = drop.world.bodies[drop.body].linvel().length();
+                    assert!(speed < 2e-3, "{half} {radius} {turn:?} {x} {z}: {speed}");
+                }
+            }
         }
     }
 }
