@@ -275,6 +275,8 @@ pub(super) fn search(
     let all_finite = Cell::new(true);
     let found = mesh.bvh().find_best(
         bound,
+        // Inlined, the two boxes of a node are computed together.
+        #[inline(always)]
         |node, _| link.distance_to_box(node.mins(), node.maxs()),
         |triangle, bound| {
             let vertices = mesh.triangle(triangle).vertices().to_owned();

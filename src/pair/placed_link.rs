@@ -193,6 +193,7 @@ impl PlacedLink {
     /// the bound is `|v| - <|v|, h> / |v|`, which is below the distance by about `h^2 / |v|`:
     /// little for a small box. The distance between the boxes of link and node is looser, because a
     /// slanted link fills its box badly.
+    #[inline(always)]
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
         let (low, high) = (mins - self.start, maxs - self.start);
         let scale =
