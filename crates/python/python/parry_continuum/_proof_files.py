@@ -76,7 +76,7 @@ def write_proof(path: AnyPath, mesh: Mesh, proof: Optional[str]) -> Path:
         text = "`proof` is None: the margin is not kept; ask for a smaller margin"
         raise ContinuumError(text, kind="bad_type")
     words = proof.split(maxsplit=8) if isinstance(proof, str) else []
-    if words[:5] != ["proof", "of", "clearance", "1", "mesh"] or len(words) < 9:
+    if words[:5] != ["proof", "of", "clearance", "2", "mesh"] or len(words) < 9:
         text = "`proof` is no proof; give what `prove`, `prove_tube` or `prove_motion` returned"
         raise ContinuumError(text, kind="bad_type")
     vertices, faces = mesh.vertices, mesh.faces
