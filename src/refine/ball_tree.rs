@@ -152,7 +152,7 @@ impl<'t> NearPairs<'t> {
         Self { trees, waiting, bound }
     }
 
-    /// Returns the next pair. `may_ask` tells of two runs whether any pair of them is wanted.
+    /// Returns the next pair. `may_ask(runs)`: whether any pair of bodies of the two runs is wanted.
     pub(super) fn next(
         &mut self,
         may_ask: impl Fn([Range<usize>; 2]) -> bool,

@@ -562,7 +562,7 @@ fn decide_solid(
     }
 }
 
-/// Returns the least clearance of a solid and a robot, given that of its surface.
+/// Returns the least clearance of a solid and a robot, given the clearance of its surface.
 fn clearance_of_solid(
     of_surface: MotionClearance,
     robot: &MovingRobot,

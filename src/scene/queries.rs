@@ -441,12 +441,9 @@ impl Scene {
         robots: &[(&Chain, Pose)],
     ) -> Result<bool, SceneError> {
         let structure = &self.structures[structure];
-        if !structure.is_solid {
-            return Ok(false);
-        }
         let (chain, pose) = robots[robot];
-        let placed = PlacedRobot::new(chain, &structure.in_mesh(&pose));
-        Ok(structure.contains(&placed.map_err(beside(structure, robot))?))
+        let contained = structure.contains(chain, &structure.in_mesh(&pose));
+        contained.map_err(beside(structure, robot))
     }
 
     /// Returns the least slack and the pair that has it, or `None` if there is no robot or no
@@ -484,7 +481,10 @@ impl Scene {
         self.order = order;
         asked?;
         for number in 0..self.structures.len() {
-            for robot in 0..if self.structures[number].is_solid { robots.len() } else { 0 } {
+            if !self.structures[number].is_solid {
+                continue;
+            }
+            for robot in 0..robots.len() {
                 self.offer_inside(number, robot, robots, &mut best)?;
             }
         }
@@ -547,12 +547,9 @@ impl Scene {
                 }
                 let found = structure.search.minimum_within(chain, &pose, bound);
                 let mut found = found.map_err(beside(structure, robot))?;
-                if structure.is_solid {
-                    let placed = PlacedRobot::new(chain, &pose);
-                    if structure.contains(&placed.map_err(beside(structure, robot))?) {
-                        let nearest = structure.search.minimum(chain, &pose);
-                        found = Some(inside(nearest.map_err(beside(structure, robot))?));
-                    }
+                if structure.contains(chain, &pose).map_err(beside(structure, robot))? {
+                    let nearest = structure.search.minimum(chain, &pose);
+                    found = Some(inside(nearest.map_err(beside(structure, robot))?));
                 }
                 let Some(found) = found else { continue };
                 let slack = slack(found.distance, margin.unwrap_or(0.0));
@@ -674,7 +671,7 @@ impl Scene {
         if let Some(all) = self.all {
             return Ok(all);
         }
-        self.structures.iter().filter(|it| it.is_solid).try_for_each(Structure::check_solid)?;
+        self.structures.iter().try_for_each(Structure::check_solid)?;
         Ok(*self.all.insert(SceneBounds::of(&self.structures)))
     }
 

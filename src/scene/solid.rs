@@ -22,7 +22,8 @@
 //! stated centreline, which decides.
 //!
 //! # Where the surface decides nothing
-//! A point of the robot that is proven to be inside is a contact, whatever the surface query says.
+//! A point of the robot that is proven to be inside is a contact even if the query about the surface
+//! decides nothing.
 //! The points of a tube are known only if it states no error.
 //!
 //! **Rounding.** A point that rounding cannot tell from the surface has no side; the next point is
@@ -34,14 +35,18 @@ use super::structure::Structure;
 use crate::answer::{Clearance, Decision, ProximityError, SceneError, Side, Witness};
 use crate::curve::Tube;
 use crate::pair::PlacedRobot;
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 impl Structure {
     /// # Errors
     /// The structure is solid, and its mesh bounds no volume.
     pub fn check_solid(&self) -> Result<(), SceneError> {
+        if !self.is_solid {
+            return Ok(());
+        }
         let surface = self.search.surface();
-        if !self.is_solid || surface.bounds_volume() {
+        if surface.bounds_volume() {
             return Ok(());
         }
         Err(SceneError::NotSolid {
@@ -67,10 +72,18 @@ impl Structure {
         moved.check_solid()
     }
 
-    /// Returns whether a robot that does not touch the surface of a solid is inside.
-    pub fn contains(&self, robot: &PlacedRobot) -> bool {
+    /// Returns whether a robot that does not touch the structure's surface is inside, if the
+    /// structure is solid. `pose` maps the robot's frame to the mesh's frame.
+    ///
+    /// # Errors
+    /// The pose is not rigid, or moves a link out of range.
+    pub fn contains(&self, chain: &Chain, pose: &Pose) -> Result<bool, ProximityError> {
+        if !self.is_solid {
+            return Ok(false);
+        }
+        let robot = PlacedRobot::new(chain, pose)?;
         let mut ends = robot.ends().into_iter().chain(robot.placed_links().map(|link| link.end()));
-        self.is_solid && self.around.at_least(robot) <= 0.0 && self.side(&mut ends) != Side::Outside
+        Ok(self.around.at_least(&robot) <= 0.0 && self.side(&mut ends) != Side::Outside)
     }
 
     /// Returns the side of the first point that has one.
@@ -113,7 +126,7 @@ impl Structure {
         }
     }
 
-    /// Returns the clearance of a solid and a tube, given that of its surface.
+    /// Returns the clearance of a solid and a tube, given the clearance of its surface.
     ///
     /// # Errors
     /// As [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance).

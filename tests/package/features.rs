@@ -3,8 +3,8 @@
 
 use super::sources::{Source, sources};
 
-/// What an attribute of a feature stands at: the next line that is no attribute. `None` if that is
-/// neither an item, a field, a variant, nor an arm of one.
+/// Returns the attributes of features that stand at something else than an item, a field, a variant
+/// or an arm, each with the next line that is no attribute.
 fn misplaced(source: &Source) -> Vec<String> {
     let mut lines = source.code.lines();
     let mut found = Vec::new();
