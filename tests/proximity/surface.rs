@@ -290,6 +290,27 @@ fn the_sides_of_links_are_those_behind_lids() {
     assert!(seen.len() == 4 && seen.values().all(|&count| count > rounds(40)), "{seen:?}");
 }
 
+/// An opening that closes takes its lid along: no later query begins at a triangle of it.
+#[test]
+fn an_opening_may_close() {
+    let (mesh, _) = vessel(2.0, 10.0, 64);
+    let through = |z: f64| {
+        Chain::with_constant_radius(&[Vector::Z * (z - 1.0), Vector::Z * (z + 1.0)], 0.1).unwrap()
+    };
+    for [closing, open] in [[0.0, 10.0], [10.0, 0.0]] {
+        let mut search = search(&mesh);
+        let crosses_opening = |search: &mut BvhSearch, z: f64| {
+            search.clears_inside(&through(z), &Pose::IDENTITY, 0.0).unwrap().crosses_opening
+        };
+        assert!(crosses_opening(&mut search, closing));
+        let close =
+            |&vertex: &Vector| if vertex.z == closing { Vector::Z * closing } else { vertex };
+        search.set_vertices(&mesh.0.iter().map(close).collect::<Vec<_>>()).unwrap();
+        assert_eq!(search.surface().openings.len(), 1);
+        assert!(crosses_opening(&mut search, open) && !crosses_opening(&mut search, closing));
+    }
+}
+
 /// A vessel that moves opens and closes nothing; its openings move with it.
 #[test]
 fn openings_follow_the_vertices() {

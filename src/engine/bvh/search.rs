@@ -114,11 +114,12 @@ impl Remembered {
         self.places = LastPlaces::default();
     }
 
-    /// Forgets the cached distances, which hold only while the mesh rests.
+    /// Forgets what holds only while the mesh rests: cached distances, and the places of lids,
+    /// whose tree is built anew.
     fn forget_distances(&mut self) {
         self.minimum.forget_distances();
         self.clears.forget_distances();
-        self.lids.forget_distances();
+        self.lids.forget();
     }
 }
 
