@@ -6,7 +6,7 @@ use parry3d_f64::math::{Real, Vector};
 ///
 /// Corners at the same place are one corner, and an edge is the pair of its ends. Triangles with
 /// two corners at the same place have no share in an edge. A closed surface whose triangles all
-/// face the same way has no openings, and no edges of either kind: see
+/// face the same way has no openings, and no edges of any of these kinds: see
 /// [`is_sound`](Self::is_sound).
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -53,9 +53,7 @@ impl PreparedMesh {
         &self.across
     }
 
-    /// The far fields of the hierarchy's nodes, for the side of a point.
-    ///
-    /// Both hierarchies have the same nodes, so either would do.
+    /// The far fields of the nodes of the hierarchy in single precision, for the side of a point.
     pub(super) fn far_fields(&self) -> &FarFields {
         let Hierarchy { mesh, .. } = &self.hierarchy;
         self.far_fields.get_or_build(|| FarFields::new(self.hierarchy.single(), mesh))

@@ -97,10 +97,9 @@ impl BvhSearch {
         let placed = PlacedRobot::new(robot, pose)?;
         let [base, tip] = placed.ends();
         let base = self.side(base);
-        let is_closed = self.surface().openings.is_empty();
-        // Both ends of a robot that touches no closed mesh are on one side.
-        let tip = if clears && is_closed { base } else { self.side(tip) };
-        let crosses_opening = !is_closed && self.context().touches_lid(placed);
+        // Both ends of a robot that touches no sound surface are on one side.
+        let tip = if clears && self.surface().is_sound() { base } else { self.side(tip) };
+        let crosses_opening = self.context().touches_lid(placed);
         Ok(InsideAnswer { base, tip, crosses_opening, clears })
     }
 
@@ -134,6 +133,7 @@ impl BvhSearch {
         pose: &Pose,
         out: &mut Vec<Side>,
     ) -> Result<(), ProximityError> {
+        out.clear();
         let (mut links, mut lids) = (Vec::new(), Vec::new());
         self.per_link(robot, pose, &mut links)?;
         let placed = PlacedRobot::new(robot, pose)?;
@@ -142,7 +142,6 @@ impl BvhSearch {
         for link in links.iter().chain(&lids) {
             touches[link.link as usize] |= link.distance == 0.0;
         }
-        out.clear();
         for run in touches.chunk_by(|one, other| one == other) {
             let links = out.len()..out.len() + run.len();
             let side = if run[0] { Side::Undecided } else { self.side_of_run(placed, links) };

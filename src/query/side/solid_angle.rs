@@ -108,7 +108,8 @@ pub(crate) fn solid_angle(corners: [Vector; 3], point: Vector) -> SolidAngle {
     SolidAngle { value: 2.0 * across.atan2(along), error: PI * ROUNDING / size }
 }
 
-/// The largest solid angle, out of `4 pi`, that holes in the mesh may cover together.
+/// How much of the whole solid angle `4 pi` a sum may lack, or exceed zero by, where holes in the
+/// mesh are seen. A proven side is wrong only if lids over the holes cover more than the rest.
 const HOLE: Real = PI;
 
 /// A signed solid angle in steradians, and a bound on its error.

@@ -10,9 +10,14 @@ use crate::mesh::Mesh;
 use crate::search::hierarchy::{Child, WideBvh};
 use crate::threads::each;
 use parry3d_f64::math::{Real, Vector};
+use std::f64::consts::PI;
 
-/// The error allowed for each node, in steradians, in successive attempts.
-const ATTEMPTS: [Real; 4] = [0.1, 0.02, 0.004, 0.0005];
+/// The error allowed for each node, in steradians, in the first attempts.
+const ATTEMPTS: [Real; 3] = [0.1, 0.02, 0.004];
+
+/// The error allowed for all nodes together in the last attempt: a quarter of what would leave the
+/// side undecided. So only triangles near the point do.
+const LAST_ATTEMPT: Real = 0.25 * PI;
 
 /// The far fields of all nodes and leaves of a hierarchy.
 #[derive(Clone)]
@@ -64,7 +69,9 @@ impl<E: Lane> Winding<'_, E> {
             self.add(Child::Node(0), error, &mut sum);
             sum.side()
         };
-        ATTEMPTS.into_iter().find_map(attempt).unwrap_or(Side::Undecided)
+        let nodes = self.fields.nodes.len() + self.fields.leaves.len();
+        let last = (LAST_ATTEMPT / nodes as Real).min(ATTEMPTS[2]);
+        ATTEMPTS.into_iter().chain([last]).find_map(attempt).unwrap_or(Side::Undecided)
     }
 
     /// Adds the solid angle of the triangles below `child`. Each node may err by `error`.
