@@ -436,6 +436,9 @@ fn flat_ends_are_proven_as_they_are_decided() {
     ] {
         prove(&tube, Vector::Z * 20.0, Vector::Z, 0.9, 1e-3);
     }
+    // The end of a fit, by its turn alone: a half ball reaches less far than the disc turned by it.
+    let fit = Tube::fit(&rod, &[1.0; 20], 1e-6).unwrap().with_turn(1.2).unwrap();
+    prove(&fit, Vector::Z * 20.0, Vector::Z, 1.1, 1e-3);
     // Arcs with their tangents, in random frames: nearer than radius x curvature x spacing / 2.
     for seed in 0..rounds(60) {
         let random = &mut Random::new(seed);

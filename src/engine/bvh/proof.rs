@@ -29,7 +29,8 @@ impl BvhSearch {
     ///
     /// The proof is a text that a short program in plain Python checks. The [page on
     /// proofs](crate::book::proofs) has both. `None` if the robot does not keep the margin, or
-    /// exceeds it by at most rounding.
+    /// exceeds it by at most rounding. Also `None` if a link does not begin where the one before it
+    /// ends, because a segment between the two was too short to be a link.
     ///
     /// The proof does not cover the side of the wall: [`side`](Self::side) answers that. The
     /// program prints this, and the premises.
@@ -93,17 +94,21 @@ impl BvhSearch {
         // Step 3: coarse pieces first, finer ones as long as planes are missing.
         let finest = (0.25 * resolution).max(placed.slack());
         let mut over = tube.length() / 16.0;
+        // As in the decision, the ends may be rounded instead of turned.
+        let ways = [Some(placed), placed.without_turn()];
         loop {
-            let (shape, _) = tube_shape(&placed, over, false);
-            // Finer pieces only make the proof longer.
-            if shape.pieces.len() > MAX_BYTES / MIN_PIECE_BYTES {
-                return Ok(None);
-            }
-            if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
-                let parted = (shape, steps);
-                let is_short = size_of(Kind::Tube, &parted) <= MAX_BYTES;
-                let write = || write_proof(plane_search.mesh(), margin, Kind::Tube, &[parted]);
-                return Ok(is_short.then(write));
+            for placed in ways.iter().flatten() {
+                let (shape, _) = tube_shape(placed, over, false);
+                // Finer pieces only make the proof longer.
+                if shape.pieces.len() > MAX_BYTES / MIN_PIECE_BYTES {
+                    return Ok(None);
+                }
+                if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
+                    let parted = (shape, steps);
+                    let is_short = size_of(Kind::Tube, &parted) <= MAX_BYTES;
+                    let write = || write_proof(plane_search.mesh(), margin, Kind::Tube, &[parted]);
+                    return Ok(is_short.then(write));
+                }
             }
             if over <= finest {
                 return Ok(None);
@@ -117,8 +122,8 @@ impl BvhSearch {
     ///
     /// The speeds that the motion states are premises of the proof, and printed. `None` if some
     /// shape does not keep the margin, or keeps it by at most about `resolution`. Also `None` if
-    /// the proof would need more than 65,536 shapes or 16 MiB. A shape takes 0.2 to 2 kB, so a
-    /// motion that needs many shapes has a long proof.
+    /// 65,536 tested shapes do not prove it, or if the proof would be longer than 16 MiB. A shape
+    /// takes 0.2 to 2 kB, so a motion that needs many shapes has a long proof.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};

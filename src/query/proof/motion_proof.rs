@@ -8,10 +8,11 @@ use crate::answer::ProximityError;
 use crate::curve::{CapPersistence, CurveBound, Section, Tube};
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, Motion, MotionDrift, SectionSignature, check_speed};
+use crate::query::motion::half_length;
 use crate::refine::{self, PlacedTube};
 use parry3d_f64::math::Real;
 
-/// The most shapes tested for a proof.
+/// The most shapes that are tested for a proof.
 const MAX_SHAPES: usize = 1 << 16;
 
 /// Returns shapes in the order of time, each with the steps that separate it from the mesh during
@@ -34,8 +35,11 @@ pub(crate) fn motion_proof(
     let (mut proven, mut waiting) = (Vec::new(), vec![[0.0, 1.0]]);
     let (mut shapes, mut bytes) = (0, 0);
     while let Some(times @ [from, to]) = waiting.pop() {
+        if shapes == MAX_SHAPES {
+            return Ok(None);
+        }
         let t = 0.5 * from + 0.5 * to;
-        let half = 0.5 * (to - from);
+        let half = half_length(times);
         tube.forget_error();
         let pose = motion.shape(t, &mut tube)?;
         sections.check(t, &tube)?;
@@ -60,7 +64,8 @@ pub(crate) fn motion_proof(
         for (piece, place) in shape.pieces.iter_mut().zip(&places) {
             let section = place.section as usize;
             let speed = carried.speed((&tube, &placed.pose), section, placed.shares(place));
-            let rounded = 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
+            // The program takes half of the interval without the rounding of times.
+            let rounded = half / (0.5 * (to - from)) * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
             piece.speed = check_speed(section, speed.point)? * rounded;
             // Balls need no turn. The turn of a link that loses its length is infinite.
             let is_unbounded = piece.flat == [false; 2] && speed.turn == Real::INFINITY;
@@ -81,7 +86,7 @@ pub(crate) fn motion_proof(
             continue;
         }
         let is_fine = moves <= resolution.max(placed.slack()) || !(from < t && t < to);
-        if is_fine || shapes >= MAX_SHAPES {
+        if is_fine {
             return Ok(None);
         }
         waiting.extend([[t, to], [from, t]]);

@@ -176,7 +176,8 @@ impl Mesh {
     /// -------
     /// str or None
     ///     None if some shape does not keep the margin, or keeps it by at most about the
-    ///     resolution, or if the proof would take more than 65,536 shapes or 16 MiB.
+    ///     resolution, or if 65,536 shapes do not prove it, or if the proof would be longer than
+    ///     16 MiB.
     ///
     /// Raises
     /// ------
