@@ -6,16 +6,16 @@
 //! - F: the velocity field of a frame, `F(x) = v + w x (x - a - v T)`. The frame turns at w, and
 //!   its point a (at T = 0) moves straight at v.
 //! - off, e: the true field of the frame differs from F at x by at most `off + e |x - a - v T|`.
-//! - p(t): a point of the robot. u: a bound on its speed relative to the true field. So p has the
-//!   velocity `F(p) + d` with `|d| <= U`, where `U = u + off + e D`, and D bounds `|p - a - v T|`.
+//! - p(t): a point of the robot. s: a bound on its speed relative to the true field. So p has the
+//!   velocity `F(p) + d` with `|d| <= U`, where `U = s + off + e D`, and D bounds `|p - a - v T|`.
 //! - g: the largest `|w x (p - a - v T)|` in the interval; g0: its value at T = 0.
 //!
 //! # Claim 1
-//! `g <= g0 + h |w| U`, and `D <= 2 (D0 + h (u + off))` if `h e <= 1/2`, where D0 is D at T = 0.
+//! `g <= g0 + h |w| U`, and `D <= 2 (D0 + h (s + off))` if `h e <= 1/2`, where D0 is D at T = 0.
 //!
 //! **Proof.** The velocity of `p - a - v T` is `w x (p - a - v T) + d`. The first part changes
 //! neither its length nor its distance from the axis w. So its length grows at most at the rate
-//! `u + off + e D`, and `exp(1/2) < 2`.
+//! `s + off + e D`, and `exp(1/2) < 2`.
 //!
 //! # Claim 2
 //! Let G be the field of another frame, with v', w', a'. In the interval `|F(p) - G(p)|` is at most
@@ -366,6 +366,7 @@ impl<'a> CarriedMotion<'a> {
             };
         }
         let piece = &piece();
+        // Claim 1: `away` is D0, `own` U, `carried` g.
         let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
         let away = piece.most(1.0, |point| point - frame.at);
         let twist = if frame.turn_off == 0.0 {
@@ -379,6 +380,7 @@ impl<'a> CarriedMotion<'a> {
         } else {
             piece.most(turning, |point| frame.turn.cross(point - frame.at)) + half * turning * own
         };
+        // Claim 2: `between` is v - v', `beside` |w - w'|, `apart` |F - G|.
         let between = frame.velocity - other.velocity;
         let mut rate = other.turn.cross(between).length();
         if beside > 0.0 {
@@ -397,6 +399,7 @@ impl<'a> CarriedMotion<'a> {
         };
         let rounding = frame.rounding(piece.reach) + other.rounding(piece.reach);
         let apart = apart + other_off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
+        // Directions.
         let turn = stated.turn + frame.turn_off;
         let twisted = if beside == 0.0 {
             0.0

@@ -162,6 +162,27 @@ fn carried_speeds_hold_in_any_frame() {
     assert!(used.iter().skip(2).flatten().all(|used| *used > 0.5), "{used:?}");
 }
 
+/// A point moves straight along x through the axis of a frame that turns about z. Seen from the
+/// frame, it also moves along y when it has left the axis.
+#[test]
+fn a_point_that_leaves_the_axis_of_the_other_frame_is_seen_to_turn() {
+    let from = [Vector::X * -0.5, Vector::Z - Vector::X * 0.75];
+    let to = [Vector::X * 0.5, Vector::Z + Vector::X * 0.75];
+    let motion = LinearMotion::chain(&from, &to, &[0.1]).unwrap();
+    let mut tube = Tube::empty();
+    let pose = motion.shape(0.5, &mut tube).unwrap();
+    let (times, shares, turn) = ([0.0, 1.0], [0.0; 2], 3.0);
+    let carried = CarriedMotion::new(&motion, times, 0.5);
+    assert!(!carried.has_frame());
+    let turned = [-0.5, 0.5].map(|share| Pose::rotation(Vector::Z * turn * share));
+    let frame = CommonFrame::between(turned, times).unwrap();
+    let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[0], shares);
+    let seen = carried.speeds(carried.stated(0, shares), || piece, &frame).seen;
+    // Velocity 1 and arm 1/2 at either end of the interval.
+    let fastest = Real::hypot(1.0, 0.5 * turn);
+    assert!(fastest <= seen.point && seen.point < 1.5 * fastest, "{seen:?}");
+}
+
 /// The poses at both ends of a rigid motion.
 fn other_poses(motion: &RigidMotion) -> [Pose; 2] {
     [0.0, 1.0].map(|t| motion.shape(t, &mut Tube::empty()).unwrap())
