@@ -12,11 +12,11 @@
 //! 3. The axis is normalised by its own power of two, so a short link seen from far away keeps its
 //!    direction.
 //!
-//! [`AxisFoot`], the foot of a contact on the axis, decides whether the contact of the link equals
-//! the contact of its capsule: see `distance/depth/foot.rs`.
+//! How far the foot of a contact on the axis is from a flat end ([`to_flat`]) decides whether the
+//! contact of the link equals the contact of its capsule: see `distance/depth/foot.rs`.
 
 use crate::distance::Scalar;
-use crate::distance::depth::to_flat;
+use crate::distance::depth;
 pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
@@ -71,16 +71,9 @@ impl AxialFrame {
     }
 }
 
-/// A point of a link's axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AxisFoot {
-    /// Distance along the axis to the nearest flat end; infinite if both ends are round.
-    pub to_flat: Real,
-}
-
-impl AxisFoot {
-    pub fn new(link: &ModifiedCylinder, on_axis: Vector) -> Self {
-        let axis = axis_or_x(link);
-        Self { to_flat: to_flat(on_axis - link.start(), link.end() - on_axis, axis, link.flat()) }
-    }
+/// Returns the distance along the axis from a point of it to the nearest flat end; infinite if both
+/// ends are round.
+pub(super) fn to_flat(link: &ModifiedCylinder, on_axis: Vector) -> Real {
+    let (from_start, to_end) = (on_axis - link.start(), link.end() - on_axis);
+    depth::to_flat(from_start, to_end, axis_or_x(link), link.flat())
 }

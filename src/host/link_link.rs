@@ -11,7 +11,7 @@
 //! normal. Two flat caps, and a flat cap deep in the other link, have no closed form here;
 //! [`LinkPair`](super::link_pair::LinkPair) measures them.
 
-use super::axial::{AxisFoot, unit};
+use super::axial::{to_flat, unit};
 use super::link_triangle::closest;
 use crate::distance::depth::{LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_segment};
@@ -63,7 +63,7 @@ pub(super) fn touch(
         return Answer::Apart;
     }
     let is_capsule = |link: &ModifiedCylinder, at| {
-        let to_flat = AxisFoot::new(link, at).to_flat;
+        let to_flat = to_flat(link, at);
         to_flat > rounding - dist.min(0.0) && (to_flat == Real::INFINITY || -dist <= link.radius())
     };
     if is_capsule(first, feet[0]) && is_capsule(second, feet[1]) {
@@ -86,7 +86,7 @@ pub(super) fn touch(
         if dist > margin + rounding {
             return Answer::Apart;
         }
-        let is_exact = AxisFoot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
+        let is_exact = to_flat(swollen, on_axis) > rounding - dist.min(0.0);
         if let (Some(out), true) =
             (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent)
         {

@@ -19,7 +19,7 @@
 //!    `distance/depth/separation.rs`, which contain the least translation. Moved apart by it, the
 //!    two touch; the touching points are the contact's points.
 
-use super::axial::{AxisFoot, power_of_two, unit};
+use super::axial::{power_of_two, to_flat, unit};
 pub(super) use crate::distance::depth::face_normal;
 use crate::distance::depth::{self, GAP_ROUNDING as ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, single};
@@ -100,7 +100,7 @@ pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<
     })
 }
 
-/// The pair relative to the link's start, scaled near one.
+/// The pair relative to the link's start, scaled so that coordinates and the radius are at most 1.
 pub(super) struct Local {
     /// The link's start in the caller's frame.
     pub origin: Vector,
@@ -118,7 +118,7 @@ impl Local {
         let offsets = triangle.map(|vertex| vertex - origin);
         let extent =
             offsets.iter().fold(span.abs(), |most, offset| most.max(offset.abs())).max_element();
-        let (down, unit) = power_of_two(extent.max(link.radius()));
+        let (down, unit) = power_of_two(2.0 * extent.max(link.radius()));
         let end = span * down;
         // A link too short for the extent of the pair counts as a ball.
         let caps = if end == Vector::ZERO { [Cap::Round; 2] } else { link.caps() };
@@ -144,7 +144,7 @@ impl Local {
         let on_axis = Vector::from(to_axis.point1);
         let from_axis = Vector::from(to_axis.point2) - on_axis;
         let outward = unit(from_axis);
-        let to_flat = AxisFoot::new(link, on_axis).to_flat;
+        let to_flat = to_flat(link, on_axis);
         let pair = depth::LinkTriangle::new(
             Link::new(link.end().into(), radius, link.flat()),
             self.triangle,

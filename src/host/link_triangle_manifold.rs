@@ -107,7 +107,8 @@ impl Met {
     }
 }
 
-/// Updates the manifold of the pair. Returns the contact, if it is within the prediction.
+/// Updates the manifold of the pair. Returns the contact, if it is within the prediction and the
+/// constraints leave it one.
 ///
 /// # Errors
 /// [`Unsupported`] for numbers out of range.
@@ -174,10 +175,9 @@ pub(super) fn update<M, C: Default + Copy>(
     if !is_turned {
         meeting.add_closest(found.distance, found.on_link);
     }
-    let deepest = if is_turned { DEEPER * found.distance.min(0.0) } else { Real::NEG_INFINITY };
-    let deepest = deepest - feature::SAME_POINT * meeting.size;
+    let least = DEEPER * found.distance.min(0.0) - feature::SAME_POINT * meeting.size;
     let place = |point: Vector| local.origin + point * local.unit;
-    for point in meeting.points.iter().filter(|point| point.dist >= deepest) {
+    for point in meeting.points.iter().filter(|point| !is_turned || point.dist >= least) {
         manifold.points.push(TrackedContact::flipped(
             place(point.on_link),
             to_triangle(place(point.on_link + meeting.normal * point.dist)),
