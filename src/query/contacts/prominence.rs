@@ -68,8 +68,8 @@
 //!    So is a triangle with a seam; its seams that are passes are followed at once.
 //! 4. If there is no open triangle left, follow those edges of the closed triangles that are passes
 //!    although both ends are none.
-//! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached. The closed
-//!    triangles become open for the next, greater distance.
+//! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached.
+//! 6. Either way the closed triangles become open for the next, greater distance.
 
 use super::local_minima::{NONE, find_root, unite};
 use super::triangle_candidates::NearLink;
