@@ -2,6 +2,8 @@
 
 mod chain;
 mod checked_fields;
+#[cfg(feature = "tubes")]
+mod decision;
 mod engine;
 mod error;
 #[cfg(feature = "tubes")]
@@ -24,6 +26,8 @@ mod witness;
 pub use chain::{
     Certificate, Contact, ContactFeature, Derivative, LinkFeature, LinkProximity, TriangleFeature,
 };
+#[cfg(feature = "tubes")]
+pub use decision::{Decision, UndecidedReason};
 pub use engine::{InsideAnswer, Side, Work};
 pub use error::{MeshError, PlacementFault, ProximityError};
 #[cfg(feature = "gpu")]
@@ -46,5 +50,5 @@ pub use scene_motion::{
 };
 pub use surface::{Opening, SurfaceReport};
 #[cfg(feature = "tubes")]
-pub use tube::{Clearance, Decision, TubePiece, UndecidedReason};
+pub use tube::{Clearance, TubePiece};
 pub use witness::Witness;

@@ -36,25 +36,9 @@
 //! disc's centre, and `r < r a`.
 
 use super::Tube;
+use super::section::CapPersistence;
 use crate::distance::Scalar;
 use parry3d_f64::math::Real;
-
-/// Whether a flat end is flat in other shapes of the robot, too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CapPersistence {
-    /// In every shape: the robot's two ends, the wider side of each step in radius, all ends of
-    /// links with flat caps, and all flat ends of a motion of one shape.
-    Always,
-    /// At a joint of a curve, where flat and round describe the same tube.
-    Either,
-    /// Flat while it is too near the limit (reason 2).
-    WhileNear,
-    /// As `WhileNear` in a chain that may be capped by vertex radii: too near the limit and every
-    /// vertex between the limit and the end.
-    WhileAllNear,
-    /// The direction is unknown.
-    Never,
-}
 
 /// Beyond this turn, in rad, a ball is a closer bound than the discs (case 2).
 const MAX_TURN: Real = 1.0;
@@ -76,13 +60,6 @@ pub(crate) trait Drift {
 
     /// Returns whether shorter intervals can reduce this turn below 1 rad.
     fn can_follow(&self, turn: Real) -> bool;
-}
-
-impl CapPersistence {
-    /// Returns whether a bounding body with this flat end contains the tube at other times, too.
-    pub(crate) fn is_safe(self) -> bool {
-        matches!(self, Self::Always | Self::Either)
-    }
 }
 
 impl Tube {

@@ -1,6 +1,7 @@
 //! The centreline: samples, or a function of arc length.
 
-use super::Section;
+use super::curve_bound::CurveBound;
+use super::section::Section;
 use crate::distance::Scalar;
 use crate::robot::direction;
 use parry3d_f64::math::{Real, Vector};
@@ -63,21 +64,6 @@ pub(super) struct NextPoint {
     pub length: Real,
     /// The bounds on the curve between the two points.
     pub bound: CurveBound,
-}
-
-/// Bounds on a part of a curve.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct CurveBound {
-    /// Upper bound on the curvature.
-    pub curvature: Real,
-    /// Upper bound on the distance of the curve's points from their nominal places.
-    pub off: Real,
-}
-
-impl CurveBound {
-    fn max(self, other: Self) -> Self {
-        Self { curvature: self.curvature.max(other.curvature), off: self.off.max(other.off) }
-    }
 }
 
 /// A centreline in the robot's frame.

@@ -31,7 +31,8 @@
 //! derivation of bodies at a face then holds with the tilt `turn` (`refine::bounding_body`).
 
 use super::Tube;
-use super::centreline::{CurveBound, NextPoint};
+use super::centreline::NextPoint;
+use super::curve_bound::CurveBound;
 use super::section::stretch;
 use super::smoothing_spline::{Knots, Smoother, SmoothingSpline};
 use super::tube_builder::TubeBuilder;

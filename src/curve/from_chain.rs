@@ -1,9 +1,8 @@
 //! A chain as a tube: each link is a section without curvature.
 
 use super::Tube;
-use super::cap_persistence::CapPersistence;
 use super::centreline::{Curve, Samples};
-use super::section::{EndFace, Section};
+use super::section::{CapPersistence, EndFace, Section};
 use crate::robot::{Cap, Chain, direction, from_link_radii, has_direction, length};
 use parry3d_f64::math::{Real, Vector};
 

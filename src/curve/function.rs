@@ -1,8 +1,7 @@
 //! A tube whose centreline is a function of arc length.
 
-use super::cap_persistence::CapPersistence;
 use super::centreline::{Curve, TICKS};
-use super::section::{EndFace, Section};
+use super::section::{CapPersistence, EndFace, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, check_place, check_sections, direction};

@@ -98,7 +98,8 @@
 //! `|l - l'| / l`. Both lengths are at least c; since the means of y' and h' are small, both are at
 //! most `c (1 + (k c)^2 / 20)`.
 
-use super::centreline::{CurveBound, NextPoint};
+use super::centreline::NextPoint;
+use super::curve_bound::CurveBound;
 use super::segment::Segment;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Rotation, Vector};

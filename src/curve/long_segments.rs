@@ -31,7 +31,8 @@
 //! lengths are still the chords' lengths, so a share of a section is the same place either way.
 
 use super::Tube;
-use super::centreline::{Curve, CurveBound, NextPoint, Samples};
+use super::centreline::{Curve, NextPoint, Samples};
+use super::curve_bound::CurveBound;
 use super::hermite_segment::{HermiteSegment, MAX_PARTS};
 use super::section::Section;
 use super::segment::Segment;

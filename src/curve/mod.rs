@@ -3,8 +3,10 @@
 mod cap_persistence;
 mod centreline;
 mod constant_curvature;
+mod curve_bound;
 mod direction_at_end;
 mod fit;
+mod flat_ends;
 mod frames;
 mod from_chain;
 mod function;
@@ -24,14 +26,14 @@ mod tube_builder;
 mod turns;
 mod uncertainty;
 
-pub(crate) use cap_persistence::{CapPersistence, Drift};
+pub(crate) use cap_persistence::Drift;
+pub(crate) use curve_bound::CurveBound;
 pub use function::TubeSection;
-pub(crate) use section::{EndFace, Section};
+pub(crate) use section::{CapPersistence, EndFace, Section};
 #[cfg(feature = "robots")]
 pub(crate) use turns::{TooSharp, TubeTurns};
 
 use crate::robot::{Cap, RobotError, direction, radius_for_all};
-pub(crate) use centreline::CurveBound;
 use centreline::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
 use sample_clusters::SampleCluster;

@@ -1,6 +1,6 @@
 //! A section under construction, sample by sample.
 
-use super::centreline::CurveBound;
+use super::curve_bound::CurveBound;
 use super::sample_clusters::SampleCluster;
 use super::section::{Section, stretch};
 use super::section_samples::{Bend, Hat, SectionSamples};

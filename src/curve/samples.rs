@@ -33,12 +33,12 @@
 //! `direction_at_end` determines the directions of faces.
 
 use super::Tube;
-use super::cap_persistence::CapPersistence;
-use super::centreline::{Curve, CurveBound, Samples};
+use super::centreline::{Curve, Samples};
+use super::curve_bound::CurveBound;
 use super::direction_at_end::direction_at_end;
 use super::open_section::{OpenSection, SamplePrefix};
 use super::sample_clusters::{self, SampleCluster};
-use super::section::{EndFace, Section};
+use super::section::{CapPersistence, EndFace, Section};
 use super::section_samples::{Bend, Hat};
 use super::segment::{Segment, curvature_between};
 use crate::distance::Scalar;

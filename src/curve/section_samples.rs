@@ -57,7 +57,7 @@
 //!   For a sample's own two segments, b + e counts in full.
 //! - In the wide chain, the noise of its closest samples counts.
 
-use super::centreline::CurveBound;
+use super::curve_bound::CurveBound;
 use super::sample_clusters::{SampleCluster, bend_at, beyond_at, gap_at};
 use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::RobotError;

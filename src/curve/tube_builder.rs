@@ -2,9 +2,9 @@
 //! require.
 
 use super::Tube;
-use super::cap_persistence::CapPersistence;
-use super::centreline::{Curve, CurveBound, NextPoint, Samples};
-use super::section::{EndFace, Section};
+use super::centreline::{Curve, NextPoint, Samples};
+use super::curve_bound::CurveBound;
+use super::section::{CapPersistence, EndFace, Section};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, is_same};
 use parry3d_f64::math::{Real, Vector};

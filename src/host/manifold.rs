@@ -36,7 +36,8 @@
 //! order. Points at most `rounding` less deep than the deepest remaining one count as equally deep;
 //! the lowest link goes first. So the same points stay while the placement changes by rounding.
 
-use super::dispatcher::{ContinuumDispatcher, check_pair, has_parts};
+use super::decomposition::{check_pair, has_parts};
+use super::dispatcher::ContinuumDispatcher;
 use super::feature::SAME_POINT;
 use super::iterated::IteratedPair;
 use super::link_triangle::LinkTrianglePair;

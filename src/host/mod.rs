@@ -6,6 +6,7 @@ mod chain;
 mod composite;
 mod convex;
 mod crest;
+mod decomposition;
 mod dispatcher;
 mod feature;
 mod height_field;

@@ -6,7 +6,7 @@
 //! 3. **Parts.** Shapes with parts are split. Their parts come back to the root dispatcher.
 //! 4. **Others** go to the inner dispatcher.
 
-use super::dispatcher::Decomposition;
+use super::decomposition::Decomposition;
 use super::height_field;
 use super::link_cast::{self, StartContact};
 use super::range::check_pose;

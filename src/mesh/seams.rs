@@ -22,12 +22,20 @@
 //! A closed mesh with equal corners has no open edge and costs one test per edge. Otherwise the
 //! open corners are sorted into a tree of boxes, and each open edge visits the boxes that it meets.
 
-use super::shared_parts::OpenEdge;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
 /// The open corners in a leaf of the tree. 4 to 16 take the same time.
 const LEAF: usize = 8;
+
+/// An edge whose triangles all have the same third corner.
+#[derive(Clone, Copy)]
+pub(super) struct OpenEdge {
+    /// The lowest of its triangles.
+    pub triangle: u32,
+    /// The first vertices at its ends.
+    pub ends: [u32; 2],
+}
 
 /// A seam, as one of its triangles sees it.
 #[derive(Clone, Copy)]

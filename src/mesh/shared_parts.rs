@@ -19,7 +19,7 @@
 //! 4. Find the open edges, and where they touch. If open corners do, repeat steps 2 and 3 with the
 //!    places that they have in common.
 
-use super::seams::{Seam, Seams, Touching};
+use super::seams::{OpenEdge, Seam, Seams, Touching};
 use parry3d_f64::math::{Real, Vector};
 use std::iter::{once, successors};
 
@@ -44,15 +44,6 @@ pub(crate) struct SharedParts {
     open: Vec<OpenEdge>,
     /// What triangles share within rounding only, if they share anything so.
     seams: Option<Seams>,
-}
-
-/// An edge whose triangles all have the same third corner.
-#[derive(Clone, Copy)]
-pub(super) struct OpenEdge {
-    /// The lowest of its triangles.
-    pub triangle: u32,
-    /// The first vertices at its ends.
-    pub ends: [u32; 2],
 }
 
 /// A part of a triangle.

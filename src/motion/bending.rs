@@ -49,7 +49,8 @@
 //! between two shares, d apart, differs from the interpolated one by at most `D d^2 / 8` times
 //! that.
 
-use super::{DisplacementBound, Motion, Speed, rigid_pose};
+use super::rigid_path::rigid_pose;
+use super::{DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::{BendingSection, ConstantCurvature, check_bending};

@@ -1,6 +1,7 @@
 //! Motions: a robot whose shape depends on time, with bounds on how fast its points move.
 
 mod bending;
+mod carried_motion;
 mod common_frame;
 mod displacement_bound;
 #[cfg(test)]
@@ -9,29 +10,33 @@ mod linear;
 mod motion_path;
 mod moving_base;
 mod rigid;
+mod rigid_path;
 mod sampled_shape;
 mod section_signature;
 mod shape_path;
+mod speed;
 #[cfg(test)]
 mod tests;
 mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
+pub(crate) use carried_motion::{CarriedMotion, CarriedPiece};
 pub use common_frame::CommonFrame;
-pub(crate) use common_frame::{CarriedMotion, CarriedPiece};
 pub use displacement_bound::DisplacementBound;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
 #[cfg(feature = "robots")]
-pub(crate) use rigid::RigidPath;
+pub(crate) use rigid_path::RigidPath;
 pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
+pub use speed::Speed;
+pub(crate) use speed::check_speed;
 pub use verify::verify_motion;
 
 use crate::curve::Tube;
-use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
+use crate::robot::RobotError;
 use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, with an upper bound on its
@@ -185,40 +190,4 @@ impl<M: Motion + ?Sized> Motion for &M {
     fn time_parts(&self) -> usize {
         (**self).time_parts()
     }
-}
-
-/// Linear and angular speed of a centreline per unit of the motion's time. A constant speed equals
-/// the distance moved from t = 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Speed {
-    /// The linear speed of its points, in units of length.
-    pub point: Real,
-    /// The angular speed of its direction, in rad. Times the radius it is the speed of a disc's rim
-    /// relative to the disc's centre.
-    pub turn: Real,
-}
-
-/// Checks a speed or an angular speed that a motion states for a section.
-///
-/// # Errors
-/// The value is negative, infinite or NaN.
-pub(crate) fn check_speed(section: usize, value: Real) -> Result<Real, RobotError> {
-    // Written so that NaN is an error.
-    if (0.0..Real::INFINITY).contains(&value) {
-        Ok(value)
-    } else {
-        Err(RobotError::BadSpeed { section, value })
-    }
-}
-
-/// Returns a motion's pose with a rotation of unit length, if it is finite, in range and rigid.
-fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
-    // A finite rotation may still be too long; `rigid` reports that.
-    let is_out = |place: &Real| !place.is_finite() || place.abs() > COORDINATE_LIMIT;
-    let places = pose.translation.to_array().into_iter().filter(is_out);
-    let parts = pose.rotation.to_array().into_iter().filter(|part| !part.is_finite());
-    if let Some(value) = places.chain(parts).next() {
-        return Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT });
-    }
-    rigid(pose).map_err(|NotRigid { length }| RobotError::PoseNotRigid { parameter, length })
 }

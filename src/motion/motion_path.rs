@@ -1,7 +1,8 @@
 //! Motions in sequence, as one motion.
 
+use super::rigid_path::rigid_pose;
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
-use super::{CommonFrame, DisplacementBound, Motion, SectionSignature, Speed, rigid_pose};
+use super::{CommonFrame, DisplacementBound, Motion, SectionSignature, Speed};
 use crate::curve::{CapPersistence, Section, Tube};
 use crate::distance::Scalar;
 use crate::robot::RobotError;

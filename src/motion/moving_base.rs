@@ -2,7 +2,7 @@
 //!
 //! # Definitions
 //! - `p(t)`: a point in the frame of the base; `p'`: its velocity there, bounded by the motion.
-//! - The frame moves along a path (`rigid`): it turns about the axis a by the angle w in total
+//! - The frame moves along a path (`rigid_path`): it turns about the axis a by the angle w in total
 //!   and moves by v. R is its rotation.
 //!
 //! # Speed
@@ -28,8 +28,9 @@
 //! 5. p0 is known from the nearest of the three shapes and the displacement since then. The error
 //!    of p0 counts s times.
 
-use super::rigid::RigidPath;
-use super::{CommonFrame, DisplacementBound, Motion, Speed, rigid_pose};
+use super::rigid_path::RigidPath;
+use super::rigid_path::rigid_pose;
+use super::{CommonFrame, DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::{RobotError, length};

@@ -16,8 +16,9 @@
 //! 5. **Displacements.** A stated displacement is compared with three shapes: at both ends of its
 //!    time, and at the middle, where a point of constant acceleration is farthest from it.
 
+use super::rigid_path::rigid_pose;
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
-use super::{CommonFrame, Motion, SectionSignature, Speed, rigid_pose};
+use super::{CommonFrame, Motion, SectionSignature, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::RobotError;

@@ -2,6 +2,7 @@
 //! waits in vain.
 
 mod calls;
+mod circles;
 mod features;
 mod layers;
 mod licences;

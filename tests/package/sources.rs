@@ -12,8 +12,13 @@ pub struct Source {
 
 /// All files of `src` except tests.
 pub fn sources() -> Vec<Source> {
+    sources_in(&["src"])
+}
+
+/// All files in some folders except tests.
+pub fn sources_in(folders: &[&str]) -> Vec<Source> {
     let mut found = Vec::new();
-    visit("src", &mut found);
+    folders.iter().for_each(|folder| visit(folder, &mut found));
     found.sort_by(|a, b| a.path.cmp(&b.path));
     assert!(found.len() > 150, "{}", found.len());
     found

@@ -18,11 +18,27 @@ pub(crate) const OPERANDS: [[f64; 2]; 8] = [
 /// How many units in the last place a result may be off.
 const TOLERANCE: f64 = 4.0;
 
+impl Device {
+    /// The fastest GPU of this machine, to compute in this precision. The environment variables of
+    /// `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
+    ///
+    /// # Errors
+    /// There is no GPU, its driver refuses it, or it lacks the requested double precision.
+    pub fn open(precision: Precision) -> Result<Self, DeviceError> {
+        let device = Self::open_of(
+            wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
+            precision,
+        )?;
+        check(&device)?;
+        Ok(device)
+    }
+}
+
 /// Compares the device's quotients and square roots with the CPU's.
 ///
 /// # Errors
 /// The results differ by more than a few units in the last place, or the device failed.
-pub(crate) fn check(device: &Device) -> Result<(), DeviceError> {
+fn check(device: &Device) -> Result<(), DeviceError> {
     let kernel = Kernel::new("self_test", include_str!("shaders/self_test.wgsl"), 2, 2);
     let mut got = Vec::new();
     Batch::new(device, &kernel)?

@@ -2,8 +2,9 @@
 
 use crate::clock::{Clock, READINGS};
 use crate::failures::Watch;
+use crate::kernel::{ANSWER_HEAD, BATCH_THREADS, Head};
 use crate::record::Record;
-use crate::{Binding, Device, DeviceError, DeviceFailure, Kernel, Precision, record};
+use crate::{Binding, Device, DeviceError, DeviceFailure, Kernel, Precision};
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 
@@ -11,18 +12,6 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 const MOST_PROBLEMS: u64 = 1 << 22;
 /// This many submissions have distinct numbers, which single precision represents exactly.
 const SUBMISSIONS: u32 = (1 << f32::MANTISSA_DIGITS) - 1;
-/// Threads of a workgroup.
-pub(crate) const BATCH_THREADS: u32 = 64;
-/// Numbers before an answer: the number of its submission.
-pub(crate) const ANSWER_HEAD: u32 = 1;
-
-record! {
-    /// What shaders/batch.wgsl reads first.
-    pub(crate) struct Head {
-        problems: u32,
-        submission: u32,
-    }
-}
 
 /// A kernel on a GPU that answers many problems at once, one thread per problem.
 pub struct Batch {

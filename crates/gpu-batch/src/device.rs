@@ -2,7 +2,7 @@
 
 use crate::failures::{Failures, Watch};
 use crate::record::Record;
-use crate::{Adapter, Binding, DeviceError, DeviceFailure, Precision, Shader, arithmetic};
+use crate::{Adapter, Binding, DeviceError, DeviceFailure, Precision, Shader};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -38,20 +38,6 @@ impl std::fmt::Debug for Device {
 }
 
 impl Device {
-    /// The fastest GPU of this machine, to compute in this precision. The environment variables of
-    /// `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
-    ///
-    /// # Errors
-    /// There is no GPU, its driver refuses it, or it lacks the requested double precision.
-    pub fn open(precision: Precision) -> Result<Self, DeviceError> {
-        let device = Self::open_of(
-            wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
-            precision,
-        )?;
-        arithmetic::check(&device)?;
-        Ok(device)
-    }
-
     /// The fastest GPU of an instance.
     pub(crate) fn open_of(
         instance: wgpu::InstanceDescriptor,

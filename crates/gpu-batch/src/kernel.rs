@@ -1,6 +1,18 @@
-use crate::batch::{ANSWER_HEAD, BATCH_THREADS, Head};
 use crate::record::Record;
-use crate::{Precision, Shader, wgsl};
+use crate::{Precision, Shader, record, wgsl};
+
+/// Threads of a workgroup.
+pub(crate) const BATCH_THREADS: u32 = 64;
+/// Numbers before an answer: the number of its submission.
+pub(crate) const ANSWER_HEAD: u32 = 1;
+
+record! {
+    /// What shaders/batch.wgsl reads first.
+    pub(crate) struct Head {
+        problems: u32,
+        submission: u32,
+    }
+}
 
 /// A function in WGSL that answers one problem, for a [`Batch`](crate::Batch).
 #[derive(Clone, Copy, Debug)]

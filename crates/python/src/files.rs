@@ -1,54 +1,21 @@
 //! Meshes and centrelines from files, with the frame and the unit that the files state.
 
 use crate::error::Refused;
-use crate::input::{DeviceName, FrameName, of, vectors};
+use crate::input::{DeviceName, FrameName, in_frame, of, vectors};
 use crate::mesh::{Mesh, Origin, Parts, is_file, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
+use crate::warning::{in_one_line, warn};
 use mesh_files::{Frame, MeshFileError, Options};
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyInt, PyString};
-use std::ffi::CString;
 use std::path::{Path, PathBuf};
-
-/// Turns points from one frame to the other: half a turn about the third axis.
-fn half_turn(points: &mut [[f64; 3]]) {
-    for [x, y, _] in points {
-        (*x, *y) = (-*x, -*y);
-    }
-}
-
-/// The frame of what was read, in the frame that was asked for: `points` are turned if the file
-/// states another one.
-pub(crate) fn in_frame(
-    points: &mut [[f64; 3]],
-    stated: Option<Frame>,
-    asked: Option<FrameName>,
-) -> Option<Frame> {
-    let Some(FrameName(asked)) = asked else { return stated };
-    if stated.is_some_and(|stated| stated != asked) {
-        half_turn(points);
-    }
-    Some(asked)
-}
 
 /// The unit after scaling of what a file states in millimetres.
 fn unit(states_unit: bool, scale: f64) -> Option<String> {
     let units = [(1.0, "mm"), (0.1, "cm"), (1e-3, "m"), (1e3, "um")];
     let found = units.into_iter().find(|(factor, _)| states_unit && *factor == scale);
     found.map(|(_, unit)| unit.to_owned())
-}
-
-/// Warns the caller of this package, in one line.
-pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    let text = CString::new(in_one_line(text))?;
-    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
-}
-
-/// The text without control characters, which the name of a file may have.
-fn in_one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
 /// The error of reading, in the words of the functions here.

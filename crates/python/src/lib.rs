@@ -15,6 +15,7 @@ mod queries;
 mod robots;
 mod scene;
 mod threads;
+mod warning;
 
 use pyo3::prelude::*;
 

@@ -1,14 +1,14 @@
 //! The class `Mesh`: how it is made and how it moves. Its queries are in `queries`.
 
 use crate::error::Refused;
-use crate::files::{in_frame, warn};
 use crate::input::{
-    DeviceName, FrameName, HasWarned, Names, Numbers, Robots, faces, mesh_text, object_of,
-    shape_text, stated_frame, vectors,
+    DeviceName, FrameName, HasWarned, Names, Numbers, Robots, faces, in_frame, mesh_text,
+    object_of, shape_text, stated_frame, vectors,
 };
 use crate::motions::Motion;
 use crate::output::{array, flat, framed};
 use crate::threads::{DeviceKind, Engine, Held, alone, interruptible, is_available};
+use crate::warning::warn;
 use mesh_files::Frame;
 use numpy::PyArrayDyn;
 use parry_continuum::parry::math::Vector;

@@ -3,7 +3,7 @@
 use crate::error::Refused;
 use crate::input::{Block, Caps, Names, Robots, of, stated_frame};
 use crate::output::{array, flat, framed};
-use crate::queries::distance::set_chain;
+use crate::queries::chains::set_chain;
 use crate::queries::two_robots::segment_of;
 use crate::threads::{Asked, compute};
 use mesh_files::Frame;

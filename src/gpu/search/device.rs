@@ -6,14 +6,15 @@
 //!    frame; fill the triangles (`corners`); fit the boxes of the nodes level by level, the lowest
 //!    first (`refit`). A level reads boxes of lower levels only.
 
-use super::kernels::{Question, REFIT_THREADS, RefitLevel, bend, corners, passes, refit};
+use super::compiled::SearchKernels;
+use super::kernels::{REFIT_THREADS, RefitLevel};
 use super::tree::SearchTree;
 use crate::distance::Vec3;
 use crate::gpu::opened::Opened;
 use crate::mesh::{Mesh, SearchFrame};
 use crate::threads::each;
-use gpu_batch::wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
-use gpu_batch::{Binding, Device, DeviceError, Record, Shader};
+use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages};
+use gpu_batch::{Device, Record};
 
 /// Bytes of a node, a triangle and a vertex.
 const NODE: u64 = 64;
@@ -21,59 +22,6 @@ const TRIANGLE: u64 = 48;
 const VERTEX: u64 = 12;
 /// Items that are written to a buffer at once.
 const AT_ONCE: usize = 1 << 18;
-
-/// The compiled kernels of the search.
-#[derive(Debug)]
-pub(in crate::gpu) struct SearchKernels {
-    corners_layout: BindGroupLayout,
-    refit_layout: BindGroupLayout,
-    pub query_layout: BindGroupLayout,
-    pub bending_layout: BindGroupLayout,
-    pub bend: ComputePipeline,
-    corners: ComputePipeline,
-    refit: ComputePipeline,
-    /// The passes of each kind of question.
-    pub passes: Vec<Vec<ComputePipeline>>,
-}
-
-impl SearchKernels {
-    /// # Errors
-    /// The driver does not compile a kernel.
-    pub(in crate::gpu) fn new(device: &Device, counts_work: bool) -> Result<Self, DeviceError> {
-        Self::with_passes(device, |kind| passes(kind, counts_work))
-    }
-
-    /// The kernels with these passes for each kind of question.
-    ///
-    /// # Errors
-    /// The driver does not compile a kernel.
-    pub(in crate::gpu) fn with_passes(
-        device: &Device,
-        passes: impl Fn(usize) -> Vec<Shader>,
-    ) -> Result<Self, DeviceError> {
-        use Binding::{Read, Uniform, Write};
-        let corners_layout = device.layout(&[Read, Read, Write]);
-        let refit_layout = device.layout(&[Uniform, Read, Read, Write]);
-        let query_layout =
-            device.layout(&[Uniform, Read, Read, Read, Read, Write, Write, Write, Write]);
-        let bending_layout = device.layout(&[Uniform, Read, Write]);
-        let compile = |kernel: Shader, layout: &BindGroupLayout| {
-            device.compile(kernel.entry_point, &kernel, layout, &[])
-        };
-        let passes_of =
-            |kind| passes(kind).into_iter().map(|pass| compile(pass, &query_layout)).collect();
-        Ok(Self {
-            corners: compile(corners(), &corners_layout)?,
-            refit: compile(refit(), &refit_layout)?,
-            passes: (0..Question::KINDS).map(passes_of).collect::<Result<_, _>>()?,
-            bend: compile(bend(), &bending_layout)?,
-            corners_layout,
-            refit_layout,
-            query_layout,
-            bending_layout,
-        })
-    }
-}
 
 /// The mesh as a batch searches it.
 #[derive(Clone, Copy)]

@@ -7,7 +7,8 @@
 
 use super::answer::{Answer, Clears, Measure, Minimum, PerLink, Within};
 use super::batch::Batches;
-use super::device::{DeviceTree, SearchKernels, Searched};
+use super::compiled::SearchKernels;
+use super::device::{DeviceTree, Searched};
 use super::kernels::Question;
 use super::robots::{Packed, Robots};
 use super::tree::{MOST_TRIANGLES, SearchTree};

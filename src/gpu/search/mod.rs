@@ -12,7 +12,7 @@
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
 //! | `tree` | the topology, built on the CPU |
 //! | `device` | the tree in the device's memory, and its refit |
-//! | `kernels` | the text of the kernels, from `shaders/search` |
+//! | `kernels` | the text of the kernels, from `shaders/search`; `compiled`: the kernels of a device |
 
 mod answer;
 mod batch;
@@ -22,6 +22,7 @@ mod bending_tests;
 mod bounds;
 mod chunk;
 mod chunk_upload;
+mod compiled;
 mod device;
 mod engine;
 pub(super) mod kernels;
@@ -31,5 +32,5 @@ mod tree;
 #[cfg(test)]
 mod twin;
 
-pub(super) use device::SearchKernels;
+pub(super) use compiled::SearchKernels;
 pub use engine::GpuSearch;

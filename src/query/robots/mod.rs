@@ -9,6 +9,7 @@ mod pair_minima;
 mod robot_with_itself;
 mod self_tube;
 mod tubes;
+mod turn_sums;
 mod two_robots;
 
 pub(crate) use robot_with_itself::{RobotWithItself, SelfMemory};

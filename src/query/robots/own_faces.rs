@@ -78,7 +78,7 @@
 
 use super::descent::PairLimit;
 use super::pair_frame::{NodeCapsule, PairFrame};
-use super::robot_with_itself::TurnSums;
+use super::turn_sums::TurnSums;
 use crate::distance::Scalar;
 use crate::pair::{PlacedEnds, PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};

@@ -4,6 +4,7 @@
 mod answers;
 mod files;
 mod placement;
+mod questions;
 mod robot;
 mod wall;
 

@@ -1,6 +1,6 @@
 //! Reads the markups of 3D Slicer: JSON with the control points of each curve.
 
-use super::{Line, Lines};
+use super::lines::{Line, Lines};
 use crate::mesh::Frame;
 use crate::text::{shown, to_mm, unit_in_mm, without_mark};
 use serde::Deserialize;

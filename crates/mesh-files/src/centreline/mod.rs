@@ -2,7 +2,9 @@
 //! extract them.
 
 mod data_array;
+mod format;
 mod heading;
+mod lines;
 mod markups;
 mod poly_data;
 mod table;
@@ -10,93 +12,18 @@ pub mod vtk_legacy;
 pub mod vtk_xml;
 mod xml;
 
-use crate::mesh::{Frame, Mesh};
+use crate::mesh::Mesh;
 use crate::{MeshFileError, Options, read_file, text};
+use format::Format;
+pub use lines::Centreline;
+use lines::{Line, Lines};
 use poly_data::{JOINING, PolyData};
 use std::path::{Path, PathBuf};
 pub use table::{load_shapes, load_table, table_from_bytes};
 
-/// Points along a line.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Centreline {
-    /// The points in the file's order.
-    pub points: Vec<[f64; 3]>,
-    /// The radius of the segment that begins at each point but the last, if the file is a text with
-    /// a column for it. A column of diameters gives half of them.
-    pub radii: Option<Vec<f64>>,
-    /// The frame of the coordinates, if the file or its format states it.
-    pub frame: Option<Frame>,
-    /// Whether the unit of length is stated. Markups state it, and the heading of a text may. Such
-    /// points are converted to millimetres before they are scaled.
-    pub states_unit: bool,
-    /// The number of points that are left out because they have no position yet.
-    pub skipped_points: usize,
-}
-
-/// A line of a file.
-#[derive(Default)]
-struct Line {
-    points: Vec<[f64; 3]>,
-    skipped_points: usize,
-    /// The type that the file names, if it is not a curve.
-    other: Option<String>,
-}
-
-/// All lines of a file.
-struct Lines {
-    lines: Vec<Line>,
-    frame: Option<Frame>,
-    states_unit: bool,
-}
-
-impl Lines {
-    /// Returns the lines of PolyData.
-    fn of(data: PolyData) -> Result<Self, String> {
-        let frame = data.frame;
-        let line = |points| Line { points, ..Line::default() };
-        Ok(Self {
-            lines: data.into_lines()?.into_iter().map(line).collect(),
-            frame,
-            states_unit: false,
-        })
-    }
-}
-
 /// Returns the surface of PolyData.
 pub fn surface(read: Result<PolyData, String>) -> Result<Mesh, String> {
     read.and_then(PolyData::into_mesh)
-}
-
-/// The format that the extension of a centreline's file names.
-#[derive(Clone, Copy)]
-enum Format {
-    Markups,
-    Table,
-    VtkLegacy,
-    VtkXml,
-}
-
-impl Format {
-    fn of(path: &Path) -> Result<Self, MeshFileError> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        match name.rsplit_once('.').map_or("", |(_, extension)| extension) {
-            "csv" | "tsv" | "txt" | "dat" => Ok(Self::Table),
-            "json" => Ok(Self::Markups),
-            "vtk" => Ok(Self::VtkLegacy),
-            "vtp" => Ok(Self::VtkXml),
-            _ => Err(MeshFileError::UnknownCentreline { file: path.to_owned() }),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Markups => "markups",
-            Self::Table => "text",
-            Self::VtkLegacy => "VTK",
-            Self::VtkXml => "VTK XML",
-        }
-    }
 }
 
 /// Reads the centreline in a file.

@@ -8,8 +8,9 @@
 //!    step since. No robot returns to its own point by such a step, but the next branch of a tree
 //!    begins where an earlier one does.
 
+use super::format::Format;
 use super::heading::{Columns, Fault, Heading, Name, fault, has_coordinates, is_units, names};
-use super::{Centreline, Format};
+use super::lines::Centreline;
 use crate::text::{from_utf16, lines, shown};
 use crate::{Frame, MeshFileError, Options, read_file};
 use std::collections::{HashMap, HashSet};

@@ -1,5 +1,6 @@
 //! Segmentations: a label for each voxel of a grid, and the surface of one label.
 
+mod fault;
 pub mod meta_image;
 pub mod nifti;
 pub mod nrrd;
@@ -9,6 +10,7 @@ use crate::mesh::{Frame, Mesh};
 use crate::text::shown;
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
+pub use fault::Fault;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Component, PathBuf};
@@ -19,35 +21,6 @@ const MOST_VOXELS: u64 = 1 << 31;
 
 /// The maximum number of labels that are listed: the lowest ones.
 const MOST_LABELS: usize = 1000;
-
-/// Why a label map gives no surface.
-pub enum Fault {
-    /// The file is invalid in its format.
-    Broken(String),
-    /// The file holds triangles.
-    NoLabels,
-    /// The file does not state the position of its voxels.
-    NoPosition(String),
-    /// A voxel has this value, which is not a label.
-    NotALabel(f64),
-    /// The surface would take this many bytes.
-    TooLarge(u64),
-    /// No voxel is inside the surface. If a label was requested, these are the labels of the
-    /// voxels.
-    NoneOf(Vec<u32>),
-}
-
-impl From<String> for Fault {
-    fn from(reason: String) -> Self {
-        Self::Broken(reason)
-    }
-}
-
-impl From<&str> for Fault {
-    fn from(reason: &str) -> Self {
-        Self::Broken(reason.into())
-    }
-}
 
 /// A label of a label map, and its volume.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Reads the values of voxels, of any type, as labels.
 
-use super::Fault;
+use super::fault::Fault;
 use crate::text::shown;
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use std::io::{self, Read};

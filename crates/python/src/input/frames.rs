@@ -1,7 +1,7 @@
 //! The frame that points or motions state, and the warning about two that differ.
 
 use super::scalars::FrameName;
-use crate::files::warn;
+use crate::warning::warn;
 use mesh_files::Frame;
 use numpy::PyUntypedArray;
 use pyo3::prelude::*;
@@ -29,6 +29,27 @@ pub(crate) fn stated_frame(given: &Bound<'_, PyAny>) -> PyResult<Option<Frame>> 
 fn attribute(given: &Bound<'_, PyAny>) -> PyResult<Option<Frame>> {
     let Some(stated) = given.getattr_opt("frame")? else { return Ok(None) };
     Ok(stated.extract::<FrameName>().ok().map(|FrameName(frame)| frame))
+}
+
+/// Turns points from one frame to the other: half a turn about the third axis.
+fn half_turn(points: &mut [[f64; 3]]) {
+    for [x, y, _] in points {
+        (*x, *y) = (-*x, -*y);
+    }
+}
+
+/// The frame of what was read, in the frame that was asked for: `points` are turned if the file
+/// states another one.
+pub(crate) fn in_frame(
+    points: &mut [[f64; 3]],
+    stated: Option<Frame>,
+    asked: Option<FrameName>,
+) -> Option<Frame> {
+    let Some(FrameName(asked)) = asked else { return stated };
+    if stated.is_some_and(|stated| stated != asked) {
+        half_turn(points);
+    }
+    Some(asked)
 }
 
 /// The text of a warning: one thing states another frame than another thing.

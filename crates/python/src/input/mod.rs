@@ -15,7 +15,7 @@ mod sections;
 pub(crate) use caps::Caps;
 pub(crate) use counts::{place_in, together};
 pub(crate) use faces::faces;
-pub(crate) use frames::{HasWarned, mesh_text, stated_frame};
+pub(crate) use frames::{HasWarned, in_frame, mesh_text, stated_frame};
 pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use objects::of as object_of;

@@ -1,6 +1,6 @@
 //! Proofs of answers.
 
-use super::distance::set_chain;
+use super::chains::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Numbers, Robots, shape_text, vectors};
 use crate::mesh::Mesh;

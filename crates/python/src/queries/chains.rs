@@ -1,15 +1,14 @@
 //! Questions about chains that both devices answer: large batches of a mesh on the GPU go there.
 
-use super::distance::set_chain;
 use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Robots};
 use crate::threads::{
     Asked, DeviceKind, DeviceSession, Engine, FirstRefused, LARGEST_CHUNK, Rows, Session, compute,
     device_failure, in_chunks, pool,
 };
-use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
+use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -19,6 +18,31 @@ use std::sync::Arc;
 const LINKS: usize = 1 << 19;
 /// The links for each thread from which a batch of any question runs on the GPU.
 const LINKS_PER_THREAD: usize = 15_000;
+
+/// Makes a chain that of a robot, in the memory that it has.
+pub(crate) fn set_chain<'a>(
+    chain: &'a mut Option<Chain>,
+    robot: &Given<'_>,
+    caps: Caps,
+) -> Result<&'a Chain, Refused> {
+    fill(chain, robot, caps).map_err(|error| robot.names.apply(error))
+}
+
+fn fill<'a>(
+    chain: &'a mut Option<Chain>,
+    robot: &Given<'_>,
+    caps: Caps,
+) -> Result<&'a Chain, RobotError> {
+    Ok(match (chain, caps) {
+        (Some(chain), Caps::Fitted) => {
+            chain.set_centreline(robot.points, robot.radii)?;
+            chain
+        }
+        (chain, Caps::Fitted) => chain.insert(Chain::from_centreline(robot.points, robot.radii)?),
+        (chain, Caps::Capsules) => chain.insert(Chain::capsules(robot.points, robot.radii)?),
+        (chain, Caps::Cylinders) => chain.insert(Chain::cylinders(robot.points, robot.radii)?),
+    })
+}
 
 /// A question about chains.
 pub(super) trait ChainQuestion: Sync {

@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin.
 
+use super::chains::set_chain;
 use super::chains::{ChainQuestion, ask_chains};
-use super::distance::set_chain;
 use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array_or_number, members, side_value};

@@ -43,31 +43,6 @@ impl ChainQuestion for Minimum {
     }
 }
 
-/// Makes a chain that of a robot, in the memory that it has.
-pub(crate) fn set_chain<'a>(
-    chain: &'a mut Option<Chain>,
-    robot: &Given<'_>,
-    caps: Caps,
-) -> Result<&'a Chain, Refused> {
-    fill(chain, robot, caps).map_err(|error| robot.names.apply(error))
-}
-
-fn fill<'a>(
-    chain: &'a mut Option<Chain>,
-    robot: &Given<'_>,
-    caps: Caps,
-) -> Result<&'a Chain, RobotError> {
-    Ok(match (chain, caps) {
-        (Some(chain), Caps::Fitted) => {
-            chain.set_centreline(robot.points, robot.radii)?;
-            chain
-        }
-        (chain, Caps::Fitted) => chain.insert(Chain::from_centreline(robot.points, robot.radii)?),
-        (chain, Caps::Capsules) => chain.insert(Chain::capsules(robot.points, robot.radii)?),
-        (chain, Caps::Cylinders) => chain.insert(Chain::cylinders(robot.points, robot.radii)?),
-    })
-}
-
 #[pymethods]
 impl Mesh {
     /// The distance between robots and the mesh's surface.

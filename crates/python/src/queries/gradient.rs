@@ -7,7 +7,7 @@
 //! with respect to an end. All other points and radii do not count: only the closest link moves the
 //! distance.
 
-use super::distance::set_chain;
+use super::chains::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given};
 use crate::mesh::Mesh;

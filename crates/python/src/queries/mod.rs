@@ -1,7 +1,7 @@
 //! The questions that a mesh is asked, a file for each.
 
 pub(crate) mod certify;
-mod chains;
+pub(crate) mod chains;
 pub(crate) mod clearance;
 mod clears;
 mod clears_sections;

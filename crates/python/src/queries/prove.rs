@@ -1,7 +1,7 @@
 //! Proofs that travel: texts that a short program checks without this library.
 
+use super::chains::set_chain;
 use super::clearance::{Stated, tubes};
-use super::distance::set_chain;
 use super::way::{Arguments, Question};
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots, of};

@@ -1,6 +1,6 @@
 //! Inside or outside, and what a mesh is as a surface.
 
-use super::distance::set_chain;
+use super::chains::set_chain;
 use super::two_robots::segment_of;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Numbers, shape_text, vectors};

@@ -1,6 +1,6 @@
 //! Every contact of a robot.
 
-use super::distance::set_chain;
+use super::chains::set_chain;
 use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{answer, rows};

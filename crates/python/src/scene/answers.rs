@@ -1,7 +1,7 @@
 //! The tuples of a scene's answers.
 
-use super::Snapshot;
 use super::robots::Placed;
+use super::snapshot::Snapshot;
 use crate::input::Robots;
 use crate::output::{answer, array, array_or_number, flat};
 use crate::queries::two_robots::segment_of;

@@ -1,7 +1,7 @@
 //! The tuples `SceneClearance` and `SceneMotionClearance`.
 
-use super::Snapshot;
 use super::place::{Place, place_fields};
+use super::snapshot::Snapshot;
 use crate::output::{answer, array_or_number, statuses};
 use crate::threads::Asked;
 use parry_continuum::proximity::{SceneClearance, SceneMotionClearance, ScenePlace};

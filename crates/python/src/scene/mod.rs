@@ -5,6 +5,7 @@ mod bounds;
 mod motions;
 mod place;
 mod robots;
+mod snapshot;
 mod tubes;
 
 use crate::error::Refused;
@@ -23,6 +24,7 @@ use parry_continuum::proximity::{self, SceneContact, SceneError, StructureProxim
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use robots::place;
+use snapshot::{Session, Snapshot, Structure};
 use std::sync::Arc;
 
 /// Several meshes, the structures, each with a margin of its own or none, and robots among them.
@@ -69,91 +71,6 @@ pub(crate) struct Scene {
     has_warned: HasWarned,
     /// Whether it has warned of robots that it does not compare.
     has_warned_of_robots: HasWarned,
-}
-
-#[derive(Clone)]
-struct Structure {
-    name: String,
-    mesh: Arc<Py<Mesh>>,
-    margin: Option<f64>,
-    /// The margins from single robots, in the order in which they were set.
-    margins_between: Vec<(usize, Option<f64>)>,
-    solid: bool,
-    pose: Pose,
-    /// The pose as it was given.
-    matrix: Option<[f64; 16]>,
-}
-
-/// The structures at the time of a question.
-struct Snapshot {
-    structures: Vec<(Structure, Arc<Engine>)>,
-    robot_margin: Option<f64>,
-    self_margin: Option<f64>,
-    nested: Vec<[usize; 2]>,
-}
-
-struct Session {
-    scene: proximity::Scene,
-    /// Of each structure's engine, which is in use as long as they are lent.
-    lent: Vec<threads::Session>,
-    chains: Vec<Option<Chain>>,
-}
-
-impl Lender for Snapshot {
-    type Session = Session;
-
-    fn lend(&self, py: Python<'_>) -> PyResult<Session> {
-        let lent = self
-            .structures
-            .iter()
-            .map(|(_, engine)| engine.lend(py))
-            .collect::<PyResult<Vec<_>>>()?;
-        let mut scene = proximity::Scene::new();
-        let mut build = || -> Result<(), Refused> {
-            for (number, ((it, _), session)) in self.structures.iter().zip(&lent).enumerate() {
-                scene.add(it.name.clone(), session.search.clone(), it.margin)?;
-                scene.set_pose(number, &it.pose)?;
-                for &(robot, margin) in &it.margins_between {
-                    scene.set_margin_between(number, robot, margin)?;
-                }
-                if it.solid {
-                    scene.set_solid(number, true)?;
-                }
-            }
-            scene.set_nested(&self.nested);
-            scene.set_self_margin(self.self_margin)?;
-            Ok(scene.set_robot_margin(self.robot_margin)?)
-        };
-        build().map_err(|refused| refused.raise(py, None))?;
-        Ok(Session { scene, lent, chains: Vec::new() })
-    }
-
-    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Session>) {
-        let mut free: Vec<Vec<threads::Session>> =
-            self.structures.iter().map(|_| Vec::new()).collect();
-        for session in sessions {
-            session.lent.into_iter().zip(&mut free).for_each(|(session, free)| free.push(session));
-        }
-        for ((_, engine), free) in self.structures.iter().zip(free) {
-            engine.take_back(py, lent, free);
-        }
-    }
-}
-
-impl Snapshot {
-    /// The names of structures; an empty name for -1.
-    fn names<'py>(
-        &self,
-        py: Python<'py>,
-        shape: &[usize],
-        structures: impl Iterator<Item = i64>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let name = |number: i64| {
-            let structure = usize::try_from(number).ok().and_then(|it| self.structures.get(it));
-            structure.map_or("", |(structure, _)| structure.name.as_str())
-        };
-        names(py, shape, structures.map(name).collect())
-    }
 }
 
 impl Scene {

@@ -1,8 +1,9 @@
 //! Queries about robots that move in a scene.
 
+use super::Scene;
 use super::bounds::{Bounds, bounds};
 use super::place::{Place, place_fields};
-use super::{Scene, Session, Snapshot};
+use super::snapshot::{Session, Snapshot};
 use crate::error::Refused;
 use crate::input::{check_length, is_bool, matrices, object_of, of, pose_if_one, vectors};
 use crate::mesh::rows;

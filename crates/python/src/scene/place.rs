@@ -1,6 +1,6 @@
 //! Where in a scene an answer is.
 
-use super::Snapshot;
+use super::snapshot::Snapshot;
 use crate::output::{array, array_or_number, flat};
 use crate::threads::Asked;
 use parry_continuum::parry::math::Vector;

@@ -2,7 +2,7 @@
 
 use crate::error::{Refused, with_prefix};
 use crate::input::{Caps, Given, Names, Robots};
-use crate::queries::distance::set_chain;
+use crate::queries::chains::set_chain;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use pyo3::prelude::*;

@@ -1,7 +1,8 @@
 //! Queries about curved tubes in a scene.
 
+use super::Scene;
 use super::bounds::{Bounds, bounds};
-use super::{Scene, Session};
+use super::snapshot::Session;
 use crate::error::Refused;
 use crate::input::{Given, check_length, object_of, of};
 use crate::output::{Enumeration, decision_value, members};

@@ -1,7 +1,8 @@
 //! Proofs of answers about two robots.
 
+use super::RobotPair;
 use super::answers::segment_of;
-use super::{Placed, RobotPair, Session};
+use super::session::{Placed, Session};
 use crate::error::Refused;
 use crate::input::{Caps, Given, vectors};
 use crate::output::{answer, array_or_number};

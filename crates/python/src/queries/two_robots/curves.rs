@@ -1,6 +1,7 @@
 //! Bounds and decisions about two curved tubes.
 
-use super::{Pairs, RobotPair, Session, second};
+use super::RobotPair;
+use super::session::{Pairs, Session, second};
 use crate::error::Refused;
 use crate::input::{Given, Names, Robots, check_length, of};
 use crate::output::{

@@ -6,12 +6,12 @@ mod curves;
 mod motions;
 mod robot_pair;
 mod self_query;
+mod session;
 
 pub(crate) use answers::segment_of;
 pub(crate) use robot_pair::RobotPair;
 pub(crate) use self_query::SelfQuery;
 
-use super::distance::set_chain;
 use crate::error::Refused;
 use crate::input::{Caps, Given, Names, Robots, stated_frame};
 use crate::output::array_or_number;
@@ -21,75 +21,7 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{self, RobotProximity};
 use pyo3::prelude::*;
-
-/// Sessions that no query uses now. They need no mesh.
-struct Sessions<S>(Held<Vec<S>>);
-
-impl<S> Default for Sessions<S> {
-    fn default() -> Self {
-        Self(Held::new(Vec::new()))
-    }
-}
-
-impl<S> Sessions<S> {
-    /// Drops all warm starts.
-    fn forget(&self, py: Python<'_>) {
-        let sessions = self.0.with(py, std::mem::take);
-        drop(sessions); // not under the lock
-    }
-}
-
-impl<S: Default + Send> Lender for Sessions<S> {
-    type Session = S;
-
-    fn lend(&self, py: Python<'_>) -> PyResult<S> {
-        Ok(self.0.with(py, Vec::pop).unwrap_or_default())
-    }
-
-    fn take_back(&self, py: Python<'_>, _: usize, sessions: impl IntoIterator<Item = S>) {
-        self.0.with(py, |free| free.extend(sessions));
-    }
-}
-
-/// Sessions of queries about two robots.
-type Pairs = Sessions<Session>;
-
-#[derive(Default)]
-struct Session {
-    pair: proximity::RobotPair,
-    chains: [Option<Chain>; 2],
-    found: Vec<RobotProximity>,
-}
-
-/// Two robots in the chains of a session: the object that answers, the robots' poses and points,
-/// and memory for the answers.
-struct Placed<'a> {
-    pair: &'a mut proximity::RobotPair,
-    chains: [&'a Chain; 2],
-    poses: [Pose; 2],
-    points: [&'a [Vector]; 2],
-    found: &'a mut Vec<RobotProximity>,
-}
-
-impl Session {
-    fn place<'a>(&'a mut self, robot: &Given<'a>, caps: Caps) -> Result<Placed<'a>, Refused> {
-        let other = second(robot)?;
-        let Self { pair, chains: [one, two], found } = self;
-        let chains = [set_chain(one, robot, caps)?, set_chain(two, &other, caps)?];
-        let (poses, points) = ([robot.pose()?, other.pose()?], [robot.points, other.points]);
-        Ok(Placed { pair, chains, poses, points, found })
-    }
-}
-
-/// The second robot of a pair.
-fn second<'a>(robot: &Given<'a>) -> Result<Given<'a>, Refused> {
-    robot.other().ok_or_else(|| {
-        Refused::other(
-            "defect",
-            "a pair has one robot; this is a defect of parry-continuum, please report it",
-        )
-    })
-}
+use session::{Pairs, Placed, Session};
 
 impl RobotPair {
     /// Two robots or two batches, or one robot and a batch. Warns once if they state different

@@ -1,6 +1,7 @@
 //! Decisions about two robots that move at the same time.
 
-use super::{RobotPair, Session};
+use super::RobotPair;
+use super::session::Session;
 use crate::input::{object_of, of};
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{

@@ -1,6 +1,6 @@
 //! The class `RobotPair`: queries about two robots.
 
-use super::Pairs;
+use super::session::Pairs;
 use crate::input::{Caps, HasWarned, of};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};

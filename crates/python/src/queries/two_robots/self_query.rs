@@ -1,13 +1,13 @@
 //! The class `SelfQuery`: queries about one robot and itself.
 
-use super::Sessions;
 use super::answers::{Row, proximities};
 use super::motions::motion_answers;
+use super::session::Sessions;
 use crate::input::{Caps, Given, Names, Robots, object_of, of};
 use crate::motions::{Motion, Moving};
 use crate::output::{Enumeration, array_or_number, decision_value, members};
+use crate::queries::chains::set_chain;
 use crate::queries::clearance::{Stated, tube, tubes};
-use crate::queries::distance::set_chain;
 use crate::threads::{Asked, answer_each, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::proximity;

@@ -2,14 +2,15 @@
 //! their triangles.
 
 mod edges;
+mod organs;
 
 use crate::Effort;
 use crate::latency::{OTHER_WORK, walk};
 use crate::robots::{at_all, text};
 use continuum_demo::timing::medians;
+use organs::{MARGIN, Surface, merged, organ};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{BvhSearch, Contact, Proximity, Scene, SceneContact};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -23,7 +24,6 @@ pub const MARK: &str = "scenes";
 const PLACES: u32 = 60;
 
 const ORGANS: u32 = 20;
-const MARGIN: f64 = 1.0;
 const REACH: f64 = 3.0;
 
 /// The chapter of the page, without its marks.
@@ -46,31 +46,6 @@ pub fn chapter(effort: Effort, written: &str) -> Result<String, String> {
     }
     edges::table(effort, &organs, &mut page)?;
     Ok(page)
-}
-
-type Surface = (Vec<Vector>, Vec<[u32; 3]>);
-
-/// One of five organs around the robot at four heights: an uneven egg.
-fn organ(number: u32) -> Surface {
-    let (vertices, triangles) = Ball::new(1.0).to_trimesh(33, 32);
-    let (around, height) =
-        (f64::from(number % 5) + 0.3 * f64::from(number / 5), f64::from(number / 5));
-    let (sin, cos) = (TAU * around / 5.0).sin_cos();
-    let centre = Vector::new(15.0 * cos, 15.0 * sin, 8.0 + 15.0 * height);
-    let uneven =
-        |v: Vector| v * (1.0 + 0.1 * (5.0 * v.x + f64::from(number)).sin() * (4.0 * v.z).cos());
-    let place = |v: &Vector| centre + uneven(*v) * Vector::new(8.0, 7.0, 9.0);
-    (vertices.iter().map(place).collect(), triangles)
-}
-
-fn merged(organs: &[Surface]) -> Surface {
-    let (mut all, mut corners) = (Vec::new(), Vec::new());
-    for (vertices, triangles) in organs {
-        let before = all.len() as u32;
-        all.extend(vertices);
-        corners.extend(triangles.iter().map(|triangle| triangle.map(|corner| corner + before)));
-    }
-    (all, corners)
 }
 
 /// A robot of 30 links that bends a little.

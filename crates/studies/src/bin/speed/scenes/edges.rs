@@ -1,7 +1,7 @@
 //! A planner's edges in a scene: compares `Scene::clears_motion` with the single queries that it
 //! replaces, and with one engine for all triangles.
 
-use super::{MARGIN, Surface, merged};
+use super::organs::{MARGIN, Surface, merged};
 use crate::Effort;
 use crate::robots::{Job, text};
 use continuum_demo::steer::Random;
