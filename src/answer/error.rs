@@ -68,27 +68,9 @@ pub enum MeshError {
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum ProximityError {
-    /// The pose of a robot or a structure has a component that is NaN or infinite.
-    #[error("the pose is not finite; check its translation and rotation")]
-    PoseNotFinite,
-    /// The rotation of the pose scales: the length of its quaternion is not 1, even within single
-    /// precision.
-    #[error(
-        "the pose has a quaternion of length {length}; normalise its rotation",
-        length = number(.length)
-    )]
-    PoseNotRigid {
-        /// The length of the quaternion.
-        length: Real,
-    },
-    /// The pose moves a link out of the range in which squares of coordinates are finite.
-    #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
-    OutOfRange {
-        /// The link's index in the chain.
-        link: usize,
-        /// The largest magnitude accepted.
-        limit: Real,
-    },
+    /// A robot or a structure cannot be placed at its pose.
+    #[error(transparent)]
+    Pose(#[from] PlacementFault),
     /// One of two robots cannot be placed.
     #[error("`{parameter}`: {fault}")]
     Placement {
@@ -133,12 +115,6 @@ pub enum ProximityError {
         curvature: Real,
         /// Its radius.
         radius: Real,
-    },
-    /// The pose moves a tube out of that range.
-    #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
-    TubeOutOfRange {
-        /// The largest magnitude accepted.
-        limit: Real,
     },
     /// A margin, a tolerance or a resolution is negative or NaN.
     #[error("`{parameter}` is {value}; it must be at least 0", value = number(.value))]
@@ -284,7 +260,7 @@ pub enum ProximityError {
     Device(#[from] DeviceFailure),
 }
 
-/// The reason why a robot cannot be placed at its pose.
+/// The reason why a robot or a structure cannot be placed at its pose.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -335,15 +311,11 @@ impl ProximityError {
     /// Attributes the error to one of two robots, whose pose or motion has this parameter name.
     #[cfg(feature = "robots")]
     pub(crate) fn of_robot(self, parameter: &'static str) -> Self {
-        let fault = match self {
-            Self::PoseNotFinite => PlacementFault::PoseNotFinite,
-            Self::PoseNotRigid { length } => PlacementFault::PoseNotRigid { length },
-            Self::OutOfRange { link, limit } => PlacementFault::OutOfRange { link, limit },
-            Self::TubeOutOfRange { limit } => PlacementFault::TubeOutOfRange { limit },
-            Self::Motion(fault) => return Self::OneMotion { parameter, fault },
-            other => return other,
-        };
-        Self::Placement { parameter, fault }
+        match self {
+            Self::Pose(fault) => Self::Placement { parameter, fault },
+            Self::Motion(fault) => Self::OneMotion { parameter, fault },
+            other => other,
+        }
     }
 
     /// The error in one word, the same in Rust and Python: the variant in snake case; for a wrapped
@@ -352,7 +324,7 @@ impl ProximityError {
         match self {
             Self::Motion(error) | Self::OneMotion { fault: error, .. } => error.kind(),
             Self::Mesh(error) => error.kind(),
-            Self::Placement { fault, .. } => fault.kind(),
+            Self::Pose(fault) | Self::Placement { fault, .. } => fault.kind(),
             #[cfg(feature = "gpu")]
             Self::Device(error) => error.kind(),
             other => other.into(),

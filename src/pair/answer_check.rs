@@ -3,7 +3,7 @@
 
 use super::coordinates::Nearest;
 use super::placed_link::PlacedLink;
-use crate::answer::{LinkProximity, ProximityError};
+use crate::answer::{LinkProximity, PlacementFault, ProximityError};
 use crate::distance::Scalar;
 use crate::mesh::{check_triangle, check_vertex, in_range};
 use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode, ModifiedCylinder, NotRigid, rigid};
@@ -177,9 +177,9 @@ pub(crate) fn corners(
 /// Returns the pose with a rotation of unit length. Every query places its robot by this pose.
 pub(crate) fn rigid_pose(pose: &Pose) -> Result<Pose, ProximityError> {
     if !pose.is_finite() {
-        return Err(ProximityError::PoseNotFinite);
+        return Err(PlacementFault::PoseNotFinite.into());
     }
-    rigid(pose).map_err(|NotRigid { length }| ProximityError::PoseNotRigid { length })
+    rigid(pose).map_err(|NotRigid { length }| PlacementFault::PoseNotRigid { length }.into())
 }
 
 /// Checks that a pose keeps every link within range. `ends` are base and tip in the mesh's frame.
@@ -205,6 +205,6 @@ pub(crate) fn check_ends(link: usize, ends: [Vector; 2]) -> Result<(), Proximity
     if ends.into_iter().all(in_range) {
         Ok(())
     } else {
-        Err(ProximityError::OutOfRange { link, limit: COORDINATE_LIMIT })
+        Err(PlacementFault::OutOfRange { link, limit: COORDINATE_LIMIT }.into())
     }
 }

@@ -1,6 +1,6 @@
 //! A tube at a pose, in the mesh's frame; its pieces, and how they are halved.
 
-use crate::answer::ProximityError;
+use crate::answer::{PlacementFault, ProximityError};
 use crate::curve::{EndFace, Section, Tube};
 use crate::distance::Scalar;
 use crate::pair::{PlacedLink, rigid_pose};
@@ -63,7 +63,7 @@ impl<'a> PlacedTube<'a> {
         let reach =
             pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
         if reach > COORDINATE_LIMIT {
-            return Err(ProximityError::TubeOutOfRange { limit: COORDINATE_LIMIT });
+            return Err(PlacementFault::TubeOutOfRange { limit: COORDINATE_LIMIT }.into());
         }
         if tube.sections().is_empty() {
             return Err(ProximityError::EmptyTube);

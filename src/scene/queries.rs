@@ -40,8 +40,8 @@ use super::scene_bounds::SceneBounds;
 use super::solid::common_point;
 use super::structure::Structure;
 use crate::answer::{
-    Between, Contact, LinkProximity, PlacementFault, ProximityError, SceneContact, SceneError,
-    StructureProximity, Tightest,
+    Between, Contact, LinkProximity, ProximityError, SceneContact, SceneError, StructureProximity,
+    Tightest,
 };
 use crate::distance::{DoubleDouble, Scalar};
 use crate::engine::{BvhSearch, Engine, Proximity, RobotPair, SelfQuery};
@@ -913,14 +913,9 @@ pub(super) fn of_pair(robots: [usize; 2]) -> impl Fn(ProximityError) -> SceneErr
         ProximityError::OneMotion { parameter, fault } => {
             of(parameter)(ProximityError::Motion(fault))
         }
-        ProximityError::Placement { parameter, fault } => of(parameter)(match fault {
-            PlacementFault::PoseNotFinite => ProximityError::PoseNotFinite,
-            PlacementFault::PoseNotRigid { length } => ProximityError::PoseNotRigid { length },
-            PlacementFault::OutOfRange { link, limit } => {
-                ProximityError::OutOfRange { link, limit }
-            }
-            PlacementFault::TubeOutOfRange { limit } => ProximityError::TubeOutOfRange { limit },
-        }),
+        ProximityError::Placement { parameter, fault } => {
+            of(parameter)(ProximityError::Pose(fault))
+        }
         error => SceneError::Robots { robots, error },
     }
 }

@@ -6,7 +6,7 @@ use continuum_testing::{Random, gpu, rounds};
 use parry_continuum::gpu::GpuSearch;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, PlacementFault, Proximity, ProximityError};
 use parry_continuum::{BendingSection, Chain, ConstantCurvature};
 use std::f64::consts::PI;
 
@@ -174,7 +174,7 @@ fn bad_sections_cost_the_others_nothing() {
         let mut out = vec![Ok(true)];
         let nowhere = Pose::from_translation(Vector::NAN);
         let error = engine.clears_sections_batch(&robots, segments, &nowhere, 0.5, &mut out);
-        assert_eq!(error, Err(ProximityError::PoseNotFinite));
+        assert_eq!(error, Err(ProximityError::Pose(PlacementFault::PoseNotFinite)));
         let error = engine.clears_sections_batch(&robots, segments, &pose, -1.0, &mut out);
         assert!(error.is_err() && out.is_empty());
     }

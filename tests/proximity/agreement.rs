@@ -278,8 +278,8 @@ fn each_robot_of_a_batch_has_a_result_of_its_own() {
     let mut robots = vec![(&robot, Pose::IDENTITY); 40];
     (robots[13].1, robots[29].1) = (bad[0], bad[1]);
     let refusals = [
-        (13, ProximityError::OutOfRange { link: 0, limit: 1e150 }),
-        (29, ProximityError::PoseNotFinite),
+        (13, ProximityError::Pose(PlacementFault::OutOfRange { link: 0, limit: 1e150 })),
+        (29, ProximityError::Pose(PlacementFault::PoseNotFinite)),
     ];
     for (name, mut engine) in engines(&mesh) {
         let (mut per_link, mut minimum, mut clears) = (Vec::new(), Vec::new(), Vec::new());
@@ -392,13 +392,13 @@ fn bad_input_is_an_error() {
         let mut out = vec![engine.minimum(&robot, &Pose::IDENTITY).unwrap()];
         assert_eq!(
             engine.per_link(&robot, &nan, &mut out),
-            Err(ProximityError::PoseNotFinite),
+            Err(ProximityError::Pose(PlacementFault::PoseNotFinite)),
             "{name}"
         );
         assert!(out.is_empty());
         assert!(matches!(
             engine.minimum(&robot, &far),
-            Err(ProximityError::OutOfRange { link: 0, .. })
+            Err(ProximityError::Pose(PlacementFault::OutOfRange { link: 0, .. }))
         ));
         for margin in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
             let error = engine.clears(&robot, &Pose::IDENTITY, margin).unwrap_err();

@@ -231,8 +231,11 @@ fn what_does_not_exist_or_is_not_finite_is_an_error() {
     let far = Pose::from_translation(Vector::X * 1e200);
     let certify =
         |answer: &LinkProximity, pose: &Pose| answer.certify(&robot, pose, &mesh).unwrap_err();
-    assert_eq!(certify(&answer, &nan), ProximityError::PoseNotFinite);
-    assert!(matches!(certify(&answer, &far), ProximityError::OutOfRange { .. }));
+    assert_eq!(certify(&answer, &nan), ProximityError::Pose(PlacementFault::PoseNotFinite));
+    assert!(matches!(
+        certify(&answer, &far),
+        ProximityError::Pose(PlacementFault::OutOfRange { .. })
+    ));
     let mut other = answer;
     other.link = 6;
     assert_eq!(certify(&other, &Pose::IDENTITY), ProximityError::NoSuchLink { link: 6, links: 6 });

@@ -462,6 +462,6 @@ fn a_bound_below_zero_asks_for_nothing() {
         assert!(message.contains("`bound` is NaN"), "{name}: {message}");
         let nowhere = Pose::translation(f64::NAN, 0.0, 0.0);
         let refused = engine.minimum_within(&robot, &nowhere, -1.0);
-        assert_eq!(refused, Err(ProximityError::PoseNotFinite), "{name}");
+        assert_eq!(refused, Err(ProximityError::Pose(PlacementFault::PoseNotFinite)), "{name}");
     }
 }

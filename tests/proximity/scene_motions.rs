@@ -4,7 +4,7 @@ use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{
-    BvhSearch, Decision, Proximity, ProximityError, RobotPair, Scene, SceneError,
+    BvhSearch, Decision, PlacementFault, Proximity, ProximityError, RobotPair, Scene, SceneError,
     SceneMotionContact, SelfQuery, UndecidedReason,
 };
 use parry_continuum::{
@@ -400,7 +400,11 @@ fn tubes_in_a_scene_are_decided_as_by_the_single_questions() {
     assert_eq!(scene.clears_tube(&[at(0.0), at(1.0)], RESOLUTION), Ok(Decision::Clear));
     assert_eq!(
         scene.clears_tube(&[at(0.0), at(Real::NAN)], RESOLUTION),
-        Err(SceneError::Robot { robot: 1, structure: None, error: ProximityError::PoseNotFinite })
+        Err(SceneError::Robot {
+            robot: 1,
+            structure: None,
+            error: ProximityError::Pose(PlacementFault::PoseNotFinite)
+        })
     );
     assert_eq!(scene.clears_tube(&[], -1.0).map_err(|error| error.kind()), Err("negative"));
 }

@@ -5,7 +5,8 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{
-    Between, BvhSearch, Proximity, ProximityError, RobotPair, Scene, SceneError, Tightest,
+    Between, BvhSearch, PlacementFault, Proximity, ProximityError, RobotPair, Scene, SceneError,
+    Tightest,
 };
 
 fn ball(centre: Vector, radius: f64) -> BvhSearch {
@@ -384,7 +385,11 @@ fn many_sets_have_the_answers_of_each() {
     }
     assert_eq!(
         clears[20],
-        Err(SceneError::Robot { robot: 1, structure: None, error: ProximityError::PoseNotFinite })
+        Err(SceneError::Robot {
+            robot: 1,
+            structure: None,
+            error: ProximityError::Pose(PlacementFault::PoseNotFinite)
+        })
     );
     let count = |clear: bool| clears.iter().filter(|answer| **answer == Ok(clear)).count();
     assert!(count(true) > 5 && count(false) > 2, "{} {}", count(true), count(false));

@@ -6,7 +6,8 @@ use continuum_testing::{Arcs, Random, Stretch, rounds};
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Clearance, Decision, Exhaustive, Proximity, ProximityError, Witness,
+    BvhSearch, Certificate, Clearance, Decision, Exhaustive, PlacementFault, Proximity,
+    ProximityError, Witness,
 };
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, RigidMotion, RobotError, Tube, TubeSection,
@@ -324,9 +325,18 @@ fn each_tube_of_a_batch_has_a_result_of_its_own() {
         for place in 0..64 {
             let (found, decided) = (&clearances[place], &decisions[place]);
             if place == 20 + round {
-                assert!(matches!(found, Err(ProximityError::TubeOutOfRange { .. })), "{found:?}");
                 assert!(
-                    matches!(decided, Err(ProximityError::TubeOutOfRange { .. })),
+                    matches!(
+                        found,
+                        Err(ProximityError::Pose(PlacementFault::TubeOutOfRange { .. }))
+                    ),
+                    "{found:?}"
+                );
+                assert!(
+                    matches!(
+                        decided,
+                        Err(ProximityError::Pose(PlacementFault::TubeOutOfRange { .. }))
+                    ),
                     "{decided:?}"
                 );
             } else {
@@ -556,7 +566,7 @@ fn rotations_that_scale_are_refused_by_all() {
         assert!(still(pose).iter().all(Result::is_ok));
         for length in [0.0, 1e-162, 1e-155, 0.5, 1.0 - 1e-5, 1.0 + 1e-5, 3.0, 1e155, 1e300] {
             let pose = posed(unit * length);
-            let is_refused = |error: ProximityError| matches!(error, ProximityError::PoseNotRigid { length: told } if (told - length).abs() <= 1e-12 * length);
+            let is_refused = |error: ProximityError| matches!(error, ProximityError::Pose(PlacementFault::PoseNotRigid { length: told }) if (told - length).abs() <= 1e-12 * length);
             assert!(is_refused(search.minimum(&chain, &pose).unwrap_err()), "{length}");
             assert!(is_refused(search.clears_inside(&chain, &pose, 1.0).unwrap_err()), "{length}");
             assert!(is_refused(all.minimum(&chain, &pose).unwrap_err()), "{length}");

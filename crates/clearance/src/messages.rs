@@ -3,7 +3,7 @@
 use crate::number::all_digits;
 use mesh_files::MeshFileError;
 use parry_continuum::RobotError;
-use parry_continuum::proximity::ProximityError;
+use parry_continuum::proximity::{PlacementFault, ProximityError};
 use std::path::Path;
 
 /// Returns a text whose control characters are escaped.
@@ -98,7 +98,8 @@ pub fn of_query(error: &ProximityError, file: &Path) -> String {
             all_digits(*tolerance),
             file.display()
         ),
-        ProximityError::OutOfRange { limit, .. } | ProximityError::TubeOutOfRange { limit } => {
+        ProximityError::Pose(PlacementFault::OutOfRange { limit, .. })
+        | ProximityError::Pose(PlacementFault::TubeOutOfRange { limit }) => {
             format!("--pose moves {} beyond +-{limit:e}; choose a smaller shift", file.display())
         }
         _ => error.to_string(),

@@ -1,6 +1,6 @@
 //! What Python raises: one exception for all that can be wrong with what was handed over.
 
-use parry_continuum::proximity::{MeshError, ProximityError, SceneError};
+use parry_continuum::proximity::{MeshError, PlacementFault, ProximityError, SceneError};
 use parry_continuum::{MatrixError, RobotError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -116,7 +116,9 @@ impl Refused {
                 index_in_robot(error)
             }
             Self::Mesh(error) | Self::Query(ProximityError::Mesh(error)) => index_in_mesh(error),
-            Self::Query(ProximityError::OutOfRange { link, .. }) => Some(*link),
+            Self::Query(ProximityError::Pose(PlacementFault::OutOfRange { link, .. })) => {
+                Some(*link)
+            }
             Self::Query(ProximityError::TooFast { section, .. }) => Some(*section),
             Self::Query(ProximityError::JointTooSharp { joint, .. }) => Some(*joint),
             Self::Query(_) | Self::Matrix(_) => None,

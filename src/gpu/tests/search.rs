@@ -1,7 +1,7 @@
 //! The search on the GPU: its refit, its failures and its limits.
 
 use super::{ball, gpu, robot};
-use crate::answer::{LinkProximity, ProximityError};
+use crate::answer::{LinkProximity, PlacementFault, ProximityError};
 use crate::engine::{BvhSearch, Proximity};
 use crate::gpu::opened::Gpu;
 use crate::gpu::search::SearchKernels;
@@ -117,7 +117,7 @@ fn contacts_are_those_of_the_cpu_bit_for_bit() {
     robots[8].1.translation.x = Real::NAN;
     let (robot, pose) = &robots[8];
     let error = engine.contacts_within(robot, pose, 1.0, 0.0, &mut out);
-    assert_eq!(error, Err(ProximityError::PoseNotFinite));
+    assert_eq!(error, Err(ProximityError::Pose(PlacementFault::PoseNotFinite)));
 }
 
 /// Robots that are refused, too far out or left to the CPU do not disturb their neighbours.
@@ -140,7 +140,7 @@ fn a_bad_robot_costs_the_others_nothing() {
     assert!(none.is_empty());
     let mut answers = Vec::new();
     engine.minimum_batch(&refs(&robots[..1]), &mut answers).unwrap();
-    assert_eq!(answers, [Err(ProximityError::PoseNotFinite)]);
+    assert_eq!(answers, [Err(ProximityError::Pose(PlacementFault::PoseNotFinite))]);
 }
 
 /// After a move the device refits, and so does the CPU where it is needed.

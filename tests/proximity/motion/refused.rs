@@ -3,7 +3,7 @@
 use super::anatomy;
 use continuum_demo::ventricle;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
-use parry_continuum::proximity::{Decision, MotionAnswer, ProximityError};
+use parry_continuum::proximity::{Decision, MotionAnswer, PlacementFault, ProximityError};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed,
     Tube, verify_motion,
@@ -100,7 +100,10 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         },
         || 0.0,
     );
-    assert_eq!(search.clears_motion(&lost, 0.0, 1e-3), Err(ProximityError::PoseNotFinite));
+    assert_eq!(
+        search.clears_motion(&lost, 0.0, 1e-3),
+        Err(ProximityError::Pose(PlacementFault::PoseNotFinite))
+    );
     assert_eq!(anatomy().clears_motion(&nothing, 0.0, 1e-3), Err(ProximityError::EmptyTube));
 
     let (a, b) = ([Vector::ZERO, Vector::Z], [Vector::ZERO, Vector::Z, Vector::X]);

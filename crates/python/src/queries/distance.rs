@@ -1,14 +1,13 @@
 //! How near a robot is.
 
 use super::chains::{ChainQuestion, ask_chains};
-use crate::error::Refused;
-use crate::input::{Caps, Given};
+use crate::input::Caps;
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
 use crate::threads::Asked;
+use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
-use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
 
 /// The closest link and triangle.

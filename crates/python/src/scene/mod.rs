@@ -14,11 +14,10 @@ use crate::input::{
     shape_text, stated_frame,
 };
 use crate::mesh::Mesh;
-use crate::output::{array, array_or_number, names};
-use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
+use crate::output::{array, array_or_number};
+use crate::threads::{Asked, Held, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
 use mesh_files::Frame;
-use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{self, SceneContact, SceneError, StructureProximity};
 use pyo3::prelude::*;

@@ -12,14 +12,10 @@ pub(crate) use answers::segment_of;
 pub(crate) use robot_pair::RobotPair;
 pub(crate) use self_query::SelfQuery;
 
-use crate::error::Refused;
 use crate::input::{Caps, Given, Names, Robots, stated_frame};
 use crate::output::array_or_number;
-use crate::threads::{Asked, Held, Lender, ask_each};
+use crate::threads::{Asked, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
-use parry_continuum::Chain;
-use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{self, RobotProximity};
 use pyo3::prelude::*;
 use session::{Pairs, Placed, Session};
 
