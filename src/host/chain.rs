@@ -28,7 +28,7 @@ use parry3d_f64::shape::{
 use std::f64::consts::FRAC_PI_2;
 
 /// Rounding error of a ray's hit, relative to the largest coordinate.
-const ROUNDING: Real = 64.0 * Real::EPSILON;
+const HIT_ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A composite custom shape; part i is link i.
 impl Shape for Chain {
@@ -234,7 +234,7 @@ impl RayCast for Chain {
 fn earliest(node: &BvhNode, ray: &Ray) -> Real {
     let bounds = Aabb { mins: node.mins(), maxs: node.maxs() };
     let places = [bounds.mins, bounds.maxs, ray.origin].map(|place| place.abs().max_element());
-    let rounding = ROUNDING * places.into_iter().fold(0.0, Real::max);
+    let rounding = HIT_ROUNDING * places.into_iter().fold(0.0, Real::max);
     let entry = bounds.loosened(rounding).cast_local_ray(ray, Real::MAX, true);
-    entry.map_or(Real::MAX, |time| time * (1.0 - ROUNDING))
+    entry.map_or(Real::MAX, |time| time * (1.0 - HIT_ROUNDING))
 }

@@ -42,8 +42,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, PointQuery, QueryDispatcher, Unsupported};
 use parry3d_f64::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};
 
-/// Rounding error relative to the largest coordinate.
-const ROUNDING: Real = 64.0 * Real::EPSILON;
+/// Rounding error of a distance between support points, relative to the largest coordinate.
+const SUPPORT_ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// Largest difference of two iterations for the same pair, relative to the largest coordinate.
 const ITERATED: Real = 1e-4;
@@ -121,7 +121,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let within = prediction.max(0.0);
         let mut found = self.inner.contact(self.pos12, g1, g2, within)?.filter(is_sound);
         if found.is_none() {
-            let rounding = ROUNDING * largest(self.pos12, g1, g2);
+            let rounding = SUPPORT_ROUNDING * largest(self.pos12, g1, g2);
             if self.are_apart_by(within + rounding) {
                 return Ok(None);
             }
@@ -172,7 +172,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let points = self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?;
         let is_apart = matches!(points, ClosestPoints::WithinMargin(..));
         let other = if is_apart { self.contact_of_closest() } else { self.contact_of_layers() }?;
-        let rounding = ROUNDING * largest(self.pos12, g1, g2);
+        let rounding = SUPPORT_ROUNDING * largest(self.pos12, g1, g2);
         // The translation needed along this normal, and the points that it implies.
         let dist = contact.dist.min(self.gap(contact.normal1));
         if let Some(less) = other.filter(|other| other.dist > dist + rounding) {
@@ -222,7 +222,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     /// Step 2: returns the widest gap, its normal, and the point of the link's core.
     fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
         let mut best: Option<(Real, Vector, Vector)> = None;
-        let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
+        let rounding = SUPPORT_ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
         for (core, depth) in shrunk_links(self.link) {
             let [first, second]: [&dyn Shape; 2] =
                 if self.link_is_first { [&core, self.shapes[1]] } else { [self.shapes[0], &core] };

@@ -56,8 +56,8 @@ const ITERATED: Real = 1e-5;
 /// The thickness of the skin, as a share of the radius: the error that rapier's solver allows for
 /// bodies of the thickness of the link.
 const SKIN: Real = 0.01;
-/// Rounding error relative to the largest coordinate.
-const ROUNDING: Real = 64.0 * Real::EPSILON;
+/// Rounding error of a distance in contact, relative to the largest coordinate.
+const TOUCH_ROUNDING: Real = 64.0 * Real::EPSILON;
 /// Most steps: more than any motion needs, except a grazing one. Then the current time is the
 /// answer, which is early and not late.
 const MAX_STEPS: usize = 200;
@@ -283,7 +283,7 @@ impl Cast<'_> {
                 (on_wall, distance) = touched_plane(link, &contact, support);
             }
         }
-        let touching = share * size + ROUNDING * largest;
+        let touching = share * size + TOUCH_ROUNDING * largest;
         if !(normal.is_finite() && distance.is_finite()) {
             return Err(Unsupported);
         }

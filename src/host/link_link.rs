@@ -19,7 +19,7 @@ use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
 /// Rounding error of a distance, relative to the largest coordinate.
-const ROUNDING: Real = 8.0 * Real::EPSILON;
+const DISTANCE_ROUNDING: Real = 8.0 * Real::EPSILON;
 /// Axes closer than this share of the largest coordinate give no direction: half of its digits
 /// would be rounding.
 pub(super) const DIRECTION: Real = 1.5e-8;
@@ -53,7 +53,7 @@ pub(super) fn touch(
     extent: Real,
     margin: Real,
 ) -> Answer {
-    let rounding = ROUNDING * extent;
+    let rounding = DISTANCE_ROUNDING * extent;
     let axis = |link: &ModifiedCylinder| [link.start(), link.end()].map(Vec3::from);
     let axes = segment_segment(axis(first), axis(second));
     let feet = [Vector::from(axes.point1), Vector::from(axes.point2)];

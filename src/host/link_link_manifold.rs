@@ -17,7 +17,7 @@ use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
 use super::lens;
 use super::link_pair::LinkPair;
-use super::link_triangle_points::{Meeting, ROUNDING};
+use super::link_triangle_points::{Meeting, POINT_ROUNDING};
 use super::{rim, support_points};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -171,7 +171,7 @@ impl LinkLinkMeeting {
         }
         let (apart, point) = (SAME_POINT * self.extent, LinkLinkPoint { on_first, dist, names });
         match self.points.iter_mut().find(|point| (point.on_first - on_first).length() <= apart) {
-            Some(same) if dist < same.dist - ROUNDING * self.extent => *same = point,
+            Some(same) if dist < same.dist - POINT_ROUNDING * self.extent => *same = point,
             Some(_) => {}
             None => self.points.push(point),
         }

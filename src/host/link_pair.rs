@@ -34,7 +34,7 @@ use parry3d_f64::shape::{Shape, TypedShape};
 
 /// Largest difference of a closed form and the distance kernels, relative to the largest
 /// coordinate.
-const ROUNDING: Real = 16.0 * Real::EPSILON;
+const CLOSED_FORM_ROUNDING: Real = 16.0 * Real::EPSILON;
 
 /// Two links in one frame.
 pub(super) struct LinkPair {
@@ -157,7 +157,7 @@ impl LinkPair {
     fn rounding(&self) -> Real {
         let flat = self.links.iter().filter(|link| link.caps().contains(&Cap::Flat));
         let turn = flat.map(|link| link.radius() / link.length()).fold(0.0, Real::max);
-        ROUNDING * self.extent * (1.0 + turn)
+        CLOSED_FORM_ROUNDING * self.extent * (1.0 + turn)
     }
 
     /// Returns the contact, if they are at most `margin` apart. Near the margin either result is

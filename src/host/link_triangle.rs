@@ -21,7 +21,7 @@
 
 use super::axial::{power_of_two, to_flat, unit};
 pub(super) use crate::distance::depth::face_normal;
-use crate::distance::depth::{self, GAP_ROUNDING as ROUNDING};
+use crate::distance::depth::{self, GAP_ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, single};
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
@@ -138,7 +138,7 @@ impl Local {
         let axis = [Vec3::from(link.start()), Vec3::from(link.end())];
         let to_axis = segment_triangle(axis, self.triangle.map(Vec3::from));
         // A link is contained in its capsule.
-        if to_axis.distance - radius > margin + ROUNDING {
+        if to_axis.distance - radius > margin + GAP_ROUNDING {
             return None;
         }
         let on_axis = Vector::from(to_axis.point1);
@@ -150,13 +150,15 @@ impl Local {
             self.triangle,
         );
 
-        if let (Some(outward), true) = (outward, to_flat > ROUNDING) {
+        if let (Some(outward), true) = (outward, to_flat > GAP_ROUNDING) {
             let distance = to_axis.distance - radius;
             if distance > margin {
                 return None;
             }
             // Cases 1 and 2.
-            if distance > 0.0 || (to_axis.distance > ROUNDING && to_flat > ROUNDING - distance) {
+            if distance > 0.0
+                || (to_axis.distance > GAP_ROUNDING && to_flat > GAP_ROUNDING - distance)
+            {
                 let normal = pair.widest_gap([Some(outward), None], distance).normal;
                 let (on_link, on_other) = (on_axis + normal * radius, on_axis + from_axis);
                 return Some(LinkContact { distance, on_link, on_other, normal });

@@ -33,7 +33,7 @@
 
 use super::axial::unit;
 use super::link_triangle::{LinkTrianglePair, Local, face_normal};
-use super::link_triangle_points::{Meeting, ROUNDING};
+use super::link_triangle_points::{Meeting, POINT_ROUNDING};
 use super::{crest, feature, rim, support_points};
 use crate::distance::{Vec3, segment_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -240,7 +240,7 @@ fn side_of_plane(local: &Local) -> Option<Vector> {
 fn edges_at(triangle: [Vector; 3], point: Vector) -> impl Iterator<Item = usize> {
     let is_on = move |edge: &usize| {
         let ends = [triangle[*edge], triangle[(edge + 1) % 3]].map(Vec3::from);
-        segment_segment(ends, [Vec3::from(point); 2]).distance <= ROUNDING
+        segment_segment(ends, [Vec3::from(point); 2]).distance <= POINT_ROUNDING
     };
     (0..3).filter(is_on)
 }

@@ -21,7 +21,7 @@ const ON_EDGE: Real = 1e-9;
 const FLAT: Real = 1e-9;
 
 /// Rounding error of the distance of a pair, relative to the largest coordinate.
-pub(super) const ROUNDING: Real = 64.0 * Real::EPSILON;
+pub(super) const POINT_ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A point of the link, the distance of the triangle's point from it along the normal, and the
 /// features of both.
@@ -54,7 +54,7 @@ impl<'a> Meeting<'a> {
         normal: Vector,
         extent: Real,
     ) -> Self {
-        let (size, rounding) = (link.length() + link.radius(), ROUNDING * extent);
+        let (size, rounding) = (link.length() + link.radius(), POINT_ROUNDING * extent);
         Self {
             link,
             triangle,

@@ -39,8 +39,8 @@ use parry3d_f64::query::{
 };
 use parry3d_f64::shape::{Shape, SupportMap};
 
-/// Rounding error relative to the largest coordinate.
-const ROUNDING: Real = 64.0 * Real::EPSILON;
+/// Rounding error of a distance after an advance, relative to the largest coordinate.
+const ADVANCE_ROUNDING: Real = 64.0 * Real::EPSILON;
 /// Most steps: more than any cast needs. A grazing cast halves its error with each step, others
 /// square it.
 const MAX_STEPS: usize = 200;
@@ -352,7 +352,7 @@ impl<'a> WallPath<'a> {
             wall.begins(way) + shift.dot(way) - self.link.local_support_point(way).dot(way);
         let places = [shift, self.link.start(), self.link.end()].into_iter();
         let largest = places.map(|place| place.abs().max_element()).fold(largest, Real::max);
-        passed > target.max(0.0) + ROUNDING * largest
+        passed > target.max(0.0) + ADVANCE_ROUNDING * largest
     }
 
     /// Returns the rounding error of a distance after the wall has moved. `largest` is the wall's
@@ -361,7 +361,7 @@ impl<'a> WallPath<'a> {
         for place in [shift, self.link.start(), self.link.end()] {
             largest = largest.max(in_range(place)?);
         }
-        Ok(ROUNDING * largest)
+        Ok(ADVANCE_ROUNDING * largest)
     }
 
     fn hit(&self, contact: LinkContact, time: Real, status: ShapeCastStatus) -> ShapeCastHit {

@@ -74,19 +74,20 @@ impl<M: Motion> MotionPath<M> {
 
     /// Returns an upper bound on the rounding error of a motion's own time.
     fn unsure(&self) -> Real {
-        8.0 * ROUNDING * self.motions.len() as Real
+        8.0 * TIME_ROUNDING * self.motions.len() as Real
     }
 
     /// Returns the motion whose part contains the times within rounding, and its own times; `None`
     /// across a joint.
     fn leg_of(&self, times: [Real; 2]) -> Option<(usize, [Real; 2])> {
-        let [first, last] = [times[0] + ROUNDING, times[1] - ROUNDING].map(|t| self.part_at(t).0);
+        let [first, last] =
+            [times[0] + TIME_ROUNDING, times[1] - TIME_ROUNDING].map(|t| self.part_at(t).0);
         (first == last).then(|| (last, times.map(|t| self.time_in(last, t))))
     }
 }
 
 /// Rounding may assign a time to a neighbouring motion up to this far beyond a joint.
-const ROUNDING: Real = 4.0 * Real::UNIT_ROUNDOFF;
+const TIME_ROUNDING: Real = 4.0 * Real::UNIT_ROUNDOFF;
 
 impl<M: Motion> Motion for MotionPath<M> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
@@ -96,10 +97,11 @@ impl<M: Motion> Motion for MotionPath<M> {
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         // Rounding may assign the time of one motion to its neighbour.
-        let [first, last] = [times[0] + ROUNDING, times[1] - ROUNDING].map(|t| self.part_at(t).0);
+        let [first, last] =
+            [times[0] + TIME_ROUNDING, times[1] - TIME_ROUNDING].map(|t| self.part_at(t).0);
         let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let all = (first.min(last)..=last).map(|leg| {
-            let own = [-ROUNDING, ROUNDING];
+            let own = [-TIME_ROUNDING, TIME_ROUNDING];
             let times = [0, 1].map(|end| self.time_in(leg, times[end] + own[end]));
             self.motions[leg].speed(section, shares, times)
         });

@@ -9,8 +9,8 @@ pub(crate) const ANSWER_HEAD: u32 = 1;
 record! {
     /// What shaders/batch.wgsl reads first.
     pub(crate) struct Head {
-        problems: u32,
-        submission: u32,
+        pub(crate) problems: u32,
+        pub(crate) submission: u32,
     }
 }
 

@@ -105,7 +105,7 @@ impl Prominence {
     pub(super) fn find_prominent(
         &mut self,
         level: Level,
-        around: LinkNeighbourhood,
+        neighbourhood: LinkNeighbourhood,
         prominence: Real,
         contacts: &[Contact],
         are_prominent: &mut Vec<bool>,
@@ -115,10 +115,10 @@ impl Prominence {
             return;
         }
         let Self { flood, kept } = self;
-        flood.begin(around);
+        flood.begin(neighbourhood);
         kept.clear();
         for (minimum, contact) in (0..).zip(contacts) {
-            let is_near = contact.normal.is_some() && around.holds(contact.witness.triangle);
+            let is_near = contact.normal.is_some() && neighbourhood.holds(contact.witness.triangle);
             let represents = |other: u32| {
                 let normals = contact.normal.zip(contacts[other as usize].normal);
                 normals.is_some_and(|(one, other)| MIN_COSINE <= one.dot(other))
@@ -126,9 +126,9 @@ impl Prominence {
             let below = contact.distance + prominence;
             let is_dropped = is_near
                 && is_represented(kept, represents)
-                && flood.reaches(level, around, contact.witness.triangle, below, represents);
+                && flood.reaches(level, neighbourhood, contact.witness.triangle, below, represents);
             if is_near && !is_dropped {
-                flood.keep(around, contact.witness.triangle, minimum);
+                flood.keep(neighbourhood, contact.witness.triangle, minimum);
                 kept.push(minimum);
             }
             are_prominent.push(!is_dropped);
@@ -190,8 +190,8 @@ struct Corner {
 
 impl Flood {
     /// Starts again for a link, without reached triangles.
-    pub(super) fn begin(&mut self, around: LinkNeighbourhood) {
-        let mesh = around.near.wall.mesh;
+    pub(super) fn begin(&mut self, neighbourhood: LinkNeighbourhood) {
+        let mesh = neighbourhood.near.wall.mesh;
         self.of_triangle.resize(mesh.len(), 0);
         self.of_vertex.resize(mesh.vertices().len(), 0);
         self.reached.clear();
@@ -203,8 +203,8 @@ impl Flood {
     }
 
     /// Adds a kept minimum at a near triangle.
-    pub(super) fn keep(&mut self, around: LinkNeighbourhood, triangle: u32, minimum: u32) {
-        let item = self.reach(around, triangle);
+    pub(super) fn keep(&mut self, neighbourhood: LinkNeighbourhood, triangle: u32, minimum: u32) {
+        let item = self.reach(neighbourhood, triangle);
         self.kept.put(find_root(&mut self.joined, item), minimum);
     }
 
@@ -213,12 +213,12 @@ impl Flood {
     pub(super) fn reaches(
         &mut self,
         level: Level,
-        around: LinkNeighbourhood,
+        neighbourhood: LinkNeighbourhood,
         triangle: u32,
         below: Real,
         stands_for: impl Fn(u32) -> bool,
     ) -> bool {
-        let item = self.reach(around, triangle);
+        let item = self.reach(neighbourhood, triangle);
         self.closed.clear();
         // The closed triangles whose edges have been followed.
         let mut ended = 0;
@@ -230,9 +230,9 @@ impl Flood {
             self.wave.clear();
             self.open.take(piece, &mut self.wave);
             if !self.wave.is_empty() {
-                self.follow_corners(level, around, below);
+                self.follow_corners(level, neighbourhood, below);
             } else if ended < self.closed.len() {
-                self.follow_edges(level, around, below, ended);
+                self.follow_edges(level, neighbourhood, below, ended);
                 ended = self.closed.len();
             } else {
                 break false;
@@ -244,11 +244,11 @@ impl Flood {
     }
 
     /// Returns the index of a near triangle in `reached`, and appends the triangle if it is new.
-    fn reach(&mut self, around: LinkNeighbourhood, triangle: u32) -> u32 {
+    fn reach(&mut self, neighbourhood: LinkNeighbourhood, triangle: u32) -> u32 {
         if let Some(item) = self.index_of(triangle) {
             return item;
         }
-        let mesh = around.near.wall.mesh;
+        let mesh = neighbourhood.near.wall.mesh;
         let corners = mesh.indices()[triangle as usize].map(|vertex| {
             let vertex = mesh.parts().first_at(vertex);
             let at = &mut self.of_vertex[vertex as usize];
@@ -278,19 +278,19 @@ impl Flood {
 
     /// Reaches all near triangles around a corner or an edge of a reached triangle, and unites
     /// their pieces.
-    fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
-        let own = self.reach(around, triangle);
-        for other in around.near.wall.mesh.parts().others(triangle, part) {
-            self.unite_with(around, own, other);
+    fn follow(&mut self, neighbourhood: LinkNeighbourhood, triangle: u32, part: usize) {
+        let own = self.reach(neighbourhood, triangle);
+        for other in neighbourhood.near.wall.mesh.parts().others(triangle, part) {
+            self.unite_with(neighbourhood, own, other);
         }
     }
 
     /// Reaches a triangle if it is near, and unites its piece with the piece of a reached one.
-    fn unite_with(&mut self, around: LinkNeighbourhood, own: u32, other: u32) {
-        if self.index_of(other).is_none() && !around.holds(other) {
+    fn unite_with(&mut self, neighbourhood: LinkNeighbourhood, own: u32, other: u32) {
+        if self.index_of(other).is_none() && !neighbourhood.holds(other) {
             return;
         }
-        let item = self.reach(around, other);
+        let item = self.reach(neighbourhood, other);
         let [first, second] = unite(&mut self.joined, own, item);
         if first != second {
             self.open.append(second, first);
@@ -300,11 +300,12 @@ impl Flood {
 
     /// Step 3: follows the corners of the wave that are passes below a distance, and closes
     /// triangles with a corner that is no pass.
-    fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
-        let (vertices, parts) = (around.near.wall.mesh.vertices(), around.near.wall.mesh.parts());
+    fn follow_corners(&mut self, level: Level, neighbourhood: LinkNeighbourhood, below: Real) {
+        let (vertices, parts) =
+            (neighbourhood.near.wall.mesh.vertices(), neighbourhood.near.wall.mesh.parts());
         let unknown = self.corners[self.heights.len()..].iter();
         let points = unknown.map(|corner| vertices[corner.vertex as usize]);
-        measure_points(level, around.link, points, |height| self.heights.push(height));
+        measure_points(level, neighbourhood.link, points, |height| self.heights.push(height));
         let wave = std::mem::take(&mut self.wave);
         for &item in &wave {
             let Reached { triangle, corners } = self.reached[item as usize];
@@ -314,9 +315,9 @@ impl Flood {
                     continue;
                 }
                 let gap = parts.gap(self.corners[corner].vertex);
-                if around.is_pass(&self.heights[corner], gap, below) {
+                if neighbourhood.is_pass(&self.heights[corner], gap, below) {
                     self.corners[corner].is_followed = true;
-                    self.follow(around, triangle, part);
+                    self.follow(neighbourhood, triangle, part);
                 } else {
                     is_closed = true;
                 }
@@ -331,22 +332,22 @@ impl Flood {
         }
         self.wave = wave;
         if !self.seams.is_empty() {
-            self.follow_seams(level, around, below);
+            self.follow_seams(level, neighbourhood, below);
         }
     }
 
     /// Follows the seams of the wave that are passes below a distance.
-    fn follow_seams(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
-        let vertices = around.near.wall.mesh.vertices();
+    fn follow_seams(&mut self, level: Level, neighbourhood: LinkNeighbourhood, below: Real) {
+        let vertices = neighbourhood.near.wall.mesh.vertices();
         let seams = std::mem::take(&mut self.seams);
         let segments =
             seams.iter().map(|(_, seam)| in_order(seam.ends.map(|end| vertices[end as usize])));
         let mut of_heights = seams.iter();
-        measure_segments(level, around.link, segments, |height| {
+        measure_segments(level, neighbourhood.link, segments, |height| {
             if let Some(&(own, seam)) = of_heights.next()
-                && around.is_pass(&height, seam.gap, below)
+                && neighbourhood.is_pass(&height, seam.gap, below)
             {
-                self.unite_with(around, own, seam.other);
+                self.unite_with(neighbourhood, own, seam.other);
             }
         });
         self.seams = seams;
@@ -355,8 +356,14 @@ impl Flood {
 
     /// Step 4: follows the edges of the closed triangles, from one of them on, that are passes
     /// below a distance although their ends are none.
-    fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
-        let mesh = around.near.wall.mesh;
+    fn follow_edges(
+        &mut self,
+        level: Level,
+        neighbourhood: LinkNeighbourhood,
+        below: Real,
+        from: usize,
+    ) {
+        let mesh = neighbourhood.near.wall.mesh;
         self.edges.clear();
         let closed = std::mem::take(&mut self.closed);
         for &item in &closed[from..] {
@@ -368,11 +375,14 @@ impl Flood {
                     continue;
                 }
                 let [start, end] = ends_of(points, part);
-                if !around.may_pass_between(ends.map(|end| &self.heights[end]), end - start, below)
-                {
+                if !neighbourhood.may_pass_between(
+                    ends.map(|end| &self.heights[end]),
+                    end - start,
+                    below,
+                ) {
                     continue;
                 }
-                if self.reaches_other_piece(around, triangle, part) {
+                if self.reaches_other_piece(neighbourhood, triangle, part) {
                     self.edges.push((triangle, part));
                 }
             }
@@ -385,13 +395,13 @@ impl Flood {
             in_order(ends.map(|end| mesh.vertices()[parts.first_at(end) as usize]))
         });
         let mut of_heights = edges.iter();
-        measure_segments(level, around.link, segments, |height| {
+        measure_segments(level, neighbourhood.link, segments, |height| {
             let Some(&(triangle, part)) = of_heights.next() else { return };
             let gaps = ends_of(mesh.indices()[triangle as usize], part).map(|end| parts.gap(end));
-            let is_pass = around.is_pass(&height, gaps[0].max(gaps[1]), below);
+            let is_pass = neighbourhood.is_pass(&height, gaps[0].max(gaps[1]), below);
             // Another triangle with this edge may have been followed already.
-            if is_pass && self.reaches_other_piece(around, triangle, part) {
-                self.follow(around, triangle, part);
+            if is_pass && self.reaches_other_piece(neighbourhood, triangle, part) {
+                self.follow(neighbourhood, triangle, part);
             }
         });
         self.edges = edges;
@@ -401,16 +411,16 @@ impl Flood {
     /// is not reached. If this is false for all triangles of the ring, they are one piece.
     fn reaches_other_piece(
         &mut self,
-        around: LinkNeighbourhood,
+        neighbourhood: LinkNeighbourhood,
         triangle: u32,
         part: usize,
     ) -> bool {
-        let own = self.reach(around, triangle);
-        for other in around.near.wall.mesh.parts().others(triangle, part) {
+        let own = self.reach(neighbourhood, triangle);
+        for other in neighbourhood.near.wall.mesh.parts().others(triangle, part) {
             if let Some(other) = self.index_of(other) {
                 return find_root(&mut self.joined, other) != find_root(&mut self.joined, own);
             }
-            if around.holds(other) {
+            if neighbourhood.holds(other) {
                 return true;
             }
         }

@@ -82,10 +82,10 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     ) -> Result<(BodyQuery, Approach), ProximityError> {
         let speeds = self.moving.speeds(part, piece, outer, tube)?;
         let approach = self.approach_bound.of_piece(speeds, self.moving.extra_turn(part, tube));
-        let (nearer, MarginQuery { margin, resolution }) = (approach.distance, self.wanted);
-        let is_wide = outer.excess() > 2.0 * nearer.max(resolution)
+        let (approached, MarginQuery { margin, resolution }) = (approach.distance, self.wanted);
+        let is_wide = outer.excess() > 2.0 * approached.max(resolution)
             && outer.excess() > 0.5 * tube.radius(piece).max(margin);
-        let aim = nearer.max(0.5 * resolution);
+        let aim = approached.max(0.5 * resolution);
         let bound = self.bound(&approach, tube.slack());
         Ok((BodyQuery { bound, is_wide, aim, start: self.moving.seed_triangle() }, approach))
     }
@@ -93,47 +93,50 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     fn decide(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<RefineAction, ProximityError> {
-        self.moving.record(near);
-        let upper = near.found.upper();
+        self.moving.record(bounded);
+        let upper = bounded.found.upper();
         // Step 1.
         if upper <= self.wanted.margin {
-            self.result.contact = Some(*near.found);
+            self.result.contact = Some(*bounded.found);
             self.result.is_fine = self.is_fine(approach);
             self.approach_bound.limit_hold(approach, 0.0);
-            self.moving.record_unresolved(near, approach);
+            self.moving.record_unresolved(bounded, approach);
             return Ok(RefineAction::Answered);
         }
         // Step 2.
         let is_time_to_blame = !self.is_fine(approach)
             && (upper <= self.bound(approach, tube.slack())
-                || near.outer.excess() <= 0.25 * approach.distance);
+                || bounded.outer.excess() <= 0.25 * approach.distance);
         if is_time_to_blame {
-            self.record_unresolved(tube, near, approach)?;
+            self.record_unresolved(tube, bounded, approach)?;
             return Ok(RefineAction::Settled);
         }
         // Step 3.
-        let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
+        let apart = upper - D::distance(bounded.nearest) - tube.uncertainty(bounded.piece);
         if self.is_fine(approach) && apart <= 0.5 * self.wanted.resolution {
             self.result.undecided = Some(UndecidedReason::Near);
             return Ok(RefineAction::Settled);
         }
         // Step 4.
-        Ok(RefineAction::Halve(0.25 * near.outer.excess()))
+        Ok(RefineAction::Halve(0.25 * bounded.outer.excess()))
     }
 
     fn decide_indivisible(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError> {
-        let (may_open, resolution) = (tube.may_become_round(near.piece), self.wanted.resolution);
-        if self.is_fine(approach) && !may_open && tube.is_entirely_queried(near.piece, near.found) {
-            let stated = tube.uncertainty(near.piece);
-            let possible = near.found.upper() - D::distance(near.nearest) - stated;
+        let (may_open, resolution) = (tube.may_become_round(bounded.piece), self.wanted.resolution);
+        if self.is_fine(approach)
+            && !may_open
+            && tube.is_entirely_queried(bounded.piece, bounded.found)
+        {
+            let stated = tube.uncertainty(bounded.piece);
+            let possible = bounded.found.upper() - D::distance(bounded.nearest) - stated;
             if let Err(error) = tube.check_resolved(possible, resolution) {
                 self.result.too_fine.get_or_insert(error);
                 self.result.undecided = Some(UndecidedReason::Near);
@@ -148,7 +151,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             self.result.undecided = Some(UndecidedReason::Near);
             return Ok(());
         }
-        self.record_unresolved(tube, near, approach)
+        self.record_unresolved(tube, bounded, approach)
     }
 }
 
@@ -170,20 +173,20 @@ impl<V, F> IntervalTest<V, F> {
     fn record_unresolved<D: Refinable, P>(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError>
     where
         V: RelativeMotion<D, P>,
     {
         let MarginQuery { margin, resolution } = self.wanted;
-        let fastest = || self.moving.fastest_section(near, approach);
+        let fastest = || self.moving.fastest_section(bounded, approach);
         check_subdivision(approach.speed, resolution, fastest)?;
         self.result.is_near |=
-            near.found.upper() <= margin + resolution + tube.uncertainty(near.piece);
-        let room = D::distance(near.nearest) - margin - tube.slack();
+            bounded.found.upper() <= margin + resolution + tube.uncertainty(bounded.piece);
+        let room = D::distance(bounded.nearest) - margin - tube.slack();
         self.approach_bound.limit_hold(approach, room);
-        self.moving.record_unresolved(near, approach);
+        self.moving.record_unresolved(bounded, approach);
         Ok(())
     }
 }

@@ -80,24 +80,28 @@ impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
     fn record_unresolved<D: Refinable<Upper = U>, P>(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) where
         V: RelativeMotion<D, P>,
     {
         let wanted = self.wanted();
-        self.nearest = self.nearest.min(lower_bound(tube, near, approach));
+        self.nearest = self.nearest.min(lower_bound(tube, bounded, approach));
         // During `hold` the piece stays at least this far away.
         self.settle(wanted);
-        let room = D::distance(near.nearest) - wanted - tube.slack();
+        let room = D::distance(bounded.nearest) - wanted - tube.slack();
         self.approach_bound.limit_hold(approach, room);
-        self.moving.record_unresolved(near, approach);
+        self.moving.record_unresolved(bounded, approach);
     }
 }
 
 /// Returns a lower bound on the clearance of a piece in the interval: `d - nearer - slack`.
-fn lower_bound<D: Refinable, P>(tube: &D, near: &BoundedPiece<D, P>, approach: &Approach) -> Real {
-    D::distance(near.nearest) - approach.distance - tube.slack()
+fn lower_bound<D: Refinable, P>(
+    tube: &D,
+    bounded: &BoundedPiece<D, P>,
+    approach: &Approach,
+) -> Real {
+    D::distance(bounded.nearest) - approach.distance - tube.slack()
 }
 
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
@@ -120,13 +124,13 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         self.left = self.left.saturating_sub(1);
         let approach =
             self.approach_bound.of_piece(self.moving.speeds(part, piece, outer, tube)?, 0.0);
-        let (nearer, upper) = (approach.distance, self.known.upper());
+        let (approached, upper) = (approach.distance, self.known.upper());
         let is_wide = self.left > 0
-            && outer.excess() > 2.0 * self.aim.max(nearer)
+            && outer.excess() > 2.0 * self.aim.max(approached)
             && (outer.is_flat() || outer.excess() > 0.25 * upper);
         // Not `wanted`: a piece farther than `upper` is settled for all later rounds.
-        let bound = upper + nearer + tube.slack();
-        let (aim, start) = (self.aim.max(nearer), self.moving.seed_triangle());
+        let bound = upper + approached + tube.slack();
+        let (aim, start) = (self.aim.max(approached), self.moving.seed_triangle());
         Ok((BodyQuery { bound, is_wide, aim, start }, approach))
     }
 
@@ -137,52 +141,55 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
     fn decide(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<RefineAction, ProximityError> {
-        self.moving.record(near);
-        self.known.offer(*near.found, self.t);
+        self.moving.record(bounded);
+        self.known.offer(*bounded.found, self.t);
         if self.is_done() {
             return Ok(RefineAction::Answered);
         }
-        let (lower, wanted) = (lower_bound(tube, near, approach), self.wanted());
+        let (lower, wanted) = (lower_bound(tube, bounded, approach), self.wanted());
         if lower >= wanted || self.left == 0 {
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        let (nearer, direction_gap) = (approach.distance, tube.direction_uncertainty(near.piece));
-        if direction_gap > 0.0 && nearer <= 0.25 * self.aim && lower >= wanted - direction_gap {
+        let (approached, direction_gap) =
+            (approach.distance, tube.direction_uncertainty(bounded.piece));
+        if direction_gap > 0.0 && approached <= 0.25 * self.aim && lower >= wanted - direction_gap {
             let UnresolvedGap { lower: least, direction_gap: most } = self.known.unresolved;
             self.known.unresolved =
                 UnresolvedGap { lower: least.min(lower), direction_gap: most.max(direction_gap) };
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        if nearer > 0.25 * self.aim
-            && (near.found.upper() <= wanted + nearer || near.outer.excess() <= 0.25 * nearer)
+        if approached > 0.25 * self.aim
+            && (bounded.found.upper() <= wanted + approached
+                || bounded.outer.excess() <= 0.25 * approached)
         {
-            self.record_unresolved(tube, near, approach);
+            self.record_unresolved(tube, bounded, approach);
             return Ok(RefineAction::Settled);
         }
-        Ok(RefineAction::Halve(self.aim.max(0.25 * near.outer.excess())))
+        Ok(RefineAction::Halve(self.aim.max(0.25 * bounded.outer.excess())))
     }
 
     fn decide_indivisible(
         &mut self,
         tube: &D,
-        near: &BoundedPiece<D, P>,
+        bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError> {
-        let nearer = approach.distance;
-        let is_fine = if tube.may_become_round(near.piece) {
-            nearer.max(self.approach_bound.cap_change) <= self.aim / 128.0
+        let approached = approach.distance;
+        let is_fine = if tube.may_become_round(bounded.piece) {
+            approached.max(self.approach_bound.cap_change) <= self.aim / 128.0
         } else {
-            nearer <= (0.25 * self.aim).max(near.found.upper() - D::distance(near.nearest))
+            approached
+                <= (0.25 * self.aim).max(bounded.found.upper() - D::distance(bounded.nearest))
         };
         if is_fine {
-            self.settle(lower_bound(tube, near, approach));
+            self.settle(lower_bound(tube, bounded, approach));
         } else {
-            self.record_unresolved(tube, near, approach);
+            self.record_unresolved(tube, bounded, approach);
         }
         Ok(())
     }

@@ -96,9 +96,9 @@ impl<'t> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_> {
 
     fn fastest_section(
         &self,
-        near: &BoundedPiece<TubePair<'t>, PiecePair>,
+        bounded: &BoundedPiece<TubePair<'t>, PiecePair>,
         approach: &Approach,
     ) -> (usize, Real) {
-        near.found.faster(approach.speeds)
+        bounded.found.faster(approach.speeds)
     }
 }

@@ -66,23 +66,23 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
         *self.last
     }
 
-    fn record(&mut self, near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>) {
-        *self.last = Some(near.nearest.triangle);
+    fn record(&mut self, bounded: &BoundedPiece<TubeInMesh<'m>, PendingPiece>) {
+        *self.last = Some(bounded.nearest.triangle);
     }
 
     fn record_unresolved(
         &mut self,
-        near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
+        bounded: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
         approach: &Approach,
     ) {
         let UnresolvedPieces { pieces, bodies, .. } = &mut self.unresolved;
-        pieces.push(PendingPiece { is_left: [true; 2], ..*near.part });
+        pieces.push(PendingPiece { is_left: [true; 2], ..*bounded.part });
         if bodies.len() <= MAX_DISPLACED_PIECES {
-            let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
+            let Nearest { distance: away, on_robot, on_mesh, .. } = *bounded.nearest;
             let normal = (on_robot - on_mesh).normalize_or_zero();
             let [_, beside] = approach.speeds;
             bodies.push(UnresolvedPiece {
-                body: near.outer.body,
+                body: bounded.outer.body,
                 away,
                 normal,
                 approach: approach.distance,
@@ -93,10 +93,10 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
 
     fn fastest_section(
         &self,
-        near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
+        bounded: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
         approach: &Approach,
     ) -> (usize, Real) {
-        (near.part.section as usize, approach.speed)
+        (bounded.part.section as usize, approach.speed)
     }
 }
 

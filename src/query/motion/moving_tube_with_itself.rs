@@ -56,9 +56,9 @@ impl<'t> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'
 
     fn fastest_section(
         &self,
-        near: &BoundedPiece<TubeWithItself<'t>, SelfPair>,
+        bounded: &BoundedPiece<TubeWithItself<'t>, SelfPair>,
         approach: &Approach,
     ) -> (usize, Real) {
-        near.found.faster(approach.speeds)
+        bounded.found.faster(approach.speeds)
     }
 }

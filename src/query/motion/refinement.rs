@@ -99,7 +99,7 @@ pub(super) trait RefinePolicy<T: Refinable, P> {
     fn decide(
         &mut self,
         tube: &T,
-        near: &BoundedPiece<T, P>,
+        bounded: &BoundedPiece<T, P>,
         approach: &Approach,
     ) -> Result<RefineAction, ProximityError>;
 
@@ -110,7 +110,7 @@ pub(super) trait RefinePolicy<T: Refinable, P> {
     fn decide_indivisible(
         &mut self,
         tube: &T,
-        near: &BoundedPiece<T, P>,
+        bounded: &BoundedPiece<T, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError>;
 }
@@ -151,7 +151,7 @@ pub(super) fn refine<T: Refinable, P: WorkItem<T>, R: RefinePolicy<T, P>>(
         };
         // Step 4.
         let found = tube.found(&piece, &outer, &nearest);
-        let near = BoundedPiece {
+        let bounded = BoundedPiece {
             part: &part,
             piece: &piece,
             outer: &outer,
@@ -159,7 +159,7 @@ pub(super) fn refine<T: Refinable, P: WorkItem<T>, R: RefinePolicy<T, P>>(
             found: &found,
         };
         // Step 5.
-        match policy.decide(tube, &near, &approach)? {
+        match policy.decide(tube, &bounded, &approach)? {
             RefineAction::Settled => {}
             RefineAction::Answered => return Ok(()),
             RefineAction::Halve(aim) => match tube.halves(&piece, &outer, aim) {
@@ -169,7 +169,7 @@ pub(super) fn refine<T: Refinable, P: WorkItem<T>, R: RefinePolicy<T, P>>(
                     let swap = R::NEARER_HALF_FIRST && is_in_first;
                     parts.extend(if swap { [second, first] } else { [first, second] });
                 }
-                None => policy.decide_indivisible(tube, &near, &approach)?,
+                None => policy.decide_indivisible(tube, &bounded, &approach)?,
             },
         }
     }

@@ -46,5 +46,5 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
     fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &Approach) {}
 
     /// Returns the fastest section of a part, and the speed of that section.
-    fn fastest_section(&self, near: &BoundedPiece<D, P>, approach: &Approach) -> (usize, Real);
+    fn fastest_section(&self, bounded: &BoundedPiece<D, P>, approach: &Approach) -> (usize, Real);
 }

@@ -19,7 +19,7 @@
 //!    sizes of at most 2, 3 and 4. The sum errs by `3 x 15 u + 9 u = 54 u`.
 //! 3. The determinant errs by `3 x 6 u` from its vectors. It also errs by `3.5 u` from a cross
 //!    product and by `3 u` from a dot product: `25 u`.
-//! 4. Together z errs by less than `60 u`. [`ROUNDING`] has room for squares of u.
+//! 4. Together z errs by less than `60 u`. [`Z_ROUNDING`] has room for squares of u.
 //!
 //! Let z err by e, and let the negative numbers be farther from z than e. Then its argument errs by
 //! `asin(e / |z|) < pi / 2 e / |z|`. For `e = 64 u` and `|z|` up to 4 these two differ by at least
@@ -89,7 +89,7 @@ use parry3d_f64::math::{Matrix, Real, Vector};
 use std::f64::consts::{PI, TAU};
 
 /// A bound on the rounding of z.
-const ROUNDING: Real = 64.0 * f64::UNIT_ROUNDOFF;
+const Z_ROUNDING: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// Returns the solid angle of a triangle, between `-2 pi` and `2 pi`. The error is `2 pi` if the
 /// point may lie on the triangle.
@@ -101,11 +101,11 @@ pub(crate) fn solid_angle(corners: [Vector; 3], point: Vector) -> SolidAngle {
     let across = a.dot(b.cross(c));
     let along = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
     let is_on_corner = [a, b, c].contains(&Vector::ZERO);
-    if is_on_corner || (across.abs() <= ROUNDING && along <= ROUNDING) {
+    if is_on_corner || (across.abs() <= Z_ROUNDING && along <= Z_ROUNDING) {
         return SolidAngle { value: 0.0, error: TAU };
     }
     let size = (across * across + along * along).sqrt();
-    SolidAngle { value: 2.0 * across.atan2(along), error: PI * ROUNDING / size }
+    SolidAngle { value: 2.0 * across.atan2(along), error: PI * Z_ROUNDING / size }
 }
 
 /// How much of the whole solid angle `4 pi` a sum may lack, or exceed zero by, where holes in the

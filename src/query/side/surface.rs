@@ -4,7 +4,7 @@
 //! - *face*: a triangle whose corners are at three different places. Other triangles have no edges.
 //! - *boundary edge*: an edge of exactly one face.
 //! - *opening*: boundary edges that are connected by their corners, unless they are a seam.
-//! - *seam*: boundary edges within [`ROUNDING`] of one line, such as the three around a corner in
+//! - *seam*: boundary edges within [`SEAM_WIDTH`] of one line, such as the three around a corner in
 //!   the middle of a longer edge. Nothing leaves through a seam.
 //! - *lid* of an opening: a triangle for each boundary edge, with the opening's centre.
 //!
@@ -31,7 +31,7 @@ use parry3d_f64::math::{Real, Vector};
 /// Corners and edges touch if no coordinate differs by more than `32 u` of the largest one
 /// (`mesh/seams.rs`). That is a distance of less than `56 u`. The width itself errs by less than
 /// `8 u`.
-const ROUNDING: Real = 64.0 * f64::UNIT_ROUNDOFF;
+const SEAM_WIDTH: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// A mesh as a surface.
 #[derive(Clone)]
@@ -55,7 +55,7 @@ impl Surface {
             let share = 1.0 / corners.len() as Real;
             let centre = corners.iter().map(|&corner| corner * share).sum();
             let width = width(corners, centre);
-            if width <= ROUNDING * largest_coordinate(corners) {
+            if width <= SEAM_WIDTH * largest_coordinate(corners) {
                 continue;
             }
             report.openings.push(Opening { edges: edges.len(), width, centre });
