@@ -1,4 +1,4 @@
-//! What is known about a part of a curve between two samples.
+//! Bounds on a part of a curve between two samples.
 
 use parry3d_f64::math::Real;
 

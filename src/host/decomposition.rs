@@ -35,8 +35,8 @@ impl<'a> Decomposition<'a> {
 ///
 /// # Errors
 /// - [`Unsupported`] for a link and voxels: parry's routines for voxels have absolute tolerances.
-/// - [`Unsupported`] for a height field that a negative scale mirrors. parry searches its cells from
-///   a box's upper corner to its lower one, where there are none.
+/// - [`Unsupported`] for a height field that a negative scale mirrors. parry searches its cells
+///   from a box's upper corner to its lower one, where there are none.
 pub(super) fn check_pair(g1: &dyn Shape, g2: &dyn Shape) -> Result<(), Unsupported> {
     let has_link = |shape: &dyn Shape| {
         let parts = shape.as_compound().map(Compound::shapes).unwrap_or_default();

@@ -141,16 +141,16 @@ pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     swept
 }
 
-/// Returns a box in the first shape's frame that contains the second shape at all times, and how far
-/// the second shape moves from the middle of the time.
+/// Returns a box in the first shape's frame that contains the second shape at all times, and how
+/// far the second shape moves from the middle of the time.
 ///
 /// **Definitions.** c: the centre of the second shape's bounding ball. h: half of the time.
 ///
-/// **Claim.** In the first shape's frame c travels at most `shift + h w lever` from its place at the
-/// middle of the time. **Proof.** The relative speed of c is at most the difference of both linear
-/// velocities, plus the swing of c about its own centre, plus w times the distance of c from the
-/// first shape's centre. The first two are constant and sum up to `shift`; the distance is at most
-/// the one in the middle plus `shift`.
+/// **Claim.** In the first shape's frame c travels at most `shift + h w lever` from its place at
+/// the middle of the time. **Proof.** The relative speed of c is at most the difference of both
+/// linear velocities, plus the swing of c about its own centre, plus w times the distance of c from
+/// the first shape's centre. The first two are constant and sum up to `shift`; the distance is at
+/// most the one in the middle plus `shift`.
 pub(super) fn reached(
     motion1: &NonlinearRigidMotion,
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),

@@ -1,8 +1,8 @@
 //! The dispatcher for a rapier world: the exact one, except for the sweeps of fast bodies.
 //!
-//! rapier sweeps each fast body by a nonlinear cast that does not stop at the start. This dispatcher
-//! casts links without their skin then ([`link_cast`](super::link_cast)). rapier does the same with
-//! its own shapes: it sweeps them to a place inside their surface.
+//! rapier sweeps each fast body by a nonlinear cast that does not stop at the start. This
+//! dispatcher casts links without their skin then ([`link_cast`](super::link_cast)). rapier does
+//! the same with its own shapes: it sweeps them to a place inside their surface.
 
 use super::ContinuumDispatcher;
 use super::link_cast::StartContact;
@@ -23,8 +23,8 @@ use parry3d_f64::shape::Shape;
 /// of its radius. A solver lets bodies overlap by its allowed error; an exact sweep would hold them
 /// there, step after step, in the air.
 ///
-/// [`install`](super::rapier::install) puts one with parry's dispatcher inside into the world. For a
-/// dispatcher of your own:
+/// [`install`](super::rapier::install) puts one with parry's dispatcher inside into the world. For
+/// a dispatcher of your own:
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, rapier};
 /// use parry_continuum::parry::query::DefaultQueryDispatcher;

@@ -1,5 +1,5 @@
-//! The speeds of a robot's points relative to its own frame and to another one, from the speeds in a
-//! frame that carries the robot.
+//! The speeds of a robot's points relative to its own frame and to another one, from the speeds in
+//! a frame that carries the robot.
 //!
 //! Symbols and claim 1 are in [`common_frame`](super::common_frame).
 //!

@@ -22,9 +22,8 @@
 //! stated centreline, which decides.
 //!
 //! # Where the surface decides nothing
-//! A point of the robot that is proven to be inside is a contact even if the query about the surface
-//! decides nothing.
-//! The points of a tube are known only if it states no error.
+//! A point of the robot that is proven to be inside is a contact even if the query about the
+//! surface decides nothing. The points of a tube are known only if it states no error.
 //!
 //! **Rounding.** A point that rounding cannot tell from the surface has no side; the next point is
 //! tried. A robot without any sided point counts as inside where the answer is a yes or no or a

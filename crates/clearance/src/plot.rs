@@ -4,8 +4,8 @@
 //! 1. Divide the segments into about [`SLICES`] slices with flat ends, and measure each. A slice is
 //!    the union of the robot's discs there.
 //! 2. Add the minimum, which the caps that fill the bends may have. So the curve passes through it.
-//! 3. Draw the distances by arc length, with the minimum and the margin. The parts within the margin
-//!    are orange.
+//! 3. Draw the distances by arc length, with the minimum and the margin. The parts within the
+//!    margin are orange.
 
 use crate::number::{as_written, length, short};
 use crate::robot::Robot;

@@ -11,8 +11,8 @@
 //! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
 //!   width of the separation along n.
 //! - **beside**: (radius x turn + mesh speed) x time. The body contains balls around the points, or
-//!   discs, whose points move by radius x turn more. A moving mesh comes nearer by its speed. A shift
-//!   that all its vertices share is subtracted from a and b instead.
+//!   discs, whose points move by radius x turn more. A moving mesh comes nearer by its speed. A
+//!   shift that all its vertices share is subtracted from a and b instead.
 //!
 //! # Claim
 //! At all times of that half of the interval, body and triangle are separated along n by at least

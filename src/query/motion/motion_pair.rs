@@ -3,9 +3,9 @@
 //!
 //! # Algorithm
 //! 1. Test an interval by the two shapes at its middle, as for one motion (`motion_search`). Let
-//!    tau be half of the interval and V1, V2 the speeds of two pieces, seen from one frame. Then the
-//!    pieces come nearer by at most tau (V1 + V2). The frame is at rest, or carries one of the robots
-//!    (`motion::common_frame`): for each interval the one with the least speeds.
+//!    tau be half of the interval and V1, V2 the speeds of two pieces, seen from one frame. Then
+//!    the pieces come nearer by at most tau (V1 + V2). The frame is at rest, or carries one of the
+//!    robots (`motion::common_frame`): for each interval the one with the least speeds.
 //! 2. Pairs for which that is too much are tested again in the remaining parts of the interval.
 //! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
 //!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
@@ -290,7 +290,8 @@ fn shape<'p>(
     Ok((PlacedTube::new(&current.tube, &pose, 0.0)?.moving(), cap_change))
 }
 
-/// Upper bounds on the speeds of all points of two robots, in the frame in which their sum is least.
+/// Upper bounds on the speeds of all points of two robots, in the frame in which their sum is
+/// least.
 struct PairSpeeds {
     seen_from: SeenFrom,
     /// For each robot the speed, and the section where it occurs.

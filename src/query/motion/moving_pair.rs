@@ -31,8 +31,8 @@ pub(super) struct MovingPair<'a> {
     pub left: &'a mut u32,
 }
 
-/// The frame in which the speeds of two robots are bounded. Each is valid; which one is best depends
-/// on what both do together.
+/// The frame in which the speeds of two robots are bounded. Each is valid; which one is best
+/// depends on what both do together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SeenFrom {
     /// The mesh's frame, or that of the scene.
