@@ -122,7 +122,7 @@ impl BallTree {
     }
 }
 
-/// Whether two lists of these lengths have so many pairs that trees pay.
+/// Whether two lists of these lengths have enough pairs for trees to pay.
 pub(super) fn pays(counts: [usize; 2]) -> bool {
     counts[0].saturating_mul(counts[1]) > FEW
 }

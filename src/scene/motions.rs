@@ -195,7 +195,7 @@ impl Scene {
     /// Returns `None` if there is no robot or no such margin. `lower` <= least slack <= `upper`.
     /// `tolerance` is a length: the bounds differ by at most the tolerance if the motions' shapes
     /// allow that ([`resolved`](SceneMotionClearance::resolved)), and all pairs of robots together
-    /// need no more than a million pairs of pieces. The margins of robots to themselves do not
+    /// need at most a million pairs of pieces. The margins of robots to themselves do not
     /// count.
     ///
     /// ```
