@@ -8,13 +8,15 @@
 //
 // Every function returns `PC_OK` or what is wrong; `pc_error_message` says what to change. A
 // pointer that is NULL or misaligned, or a length that does not fit, is an error. Any other pointer
-// must point to as many items as its length says. After an error the places of answers are
-// undefined, except that the place of a new handle is NULL.
+// must point to as many items as its length says. The places of answers overlap neither each other
+// nor what the call reads. After an error they are undefined, except that the place of a new handle
+// is NULL, and that a batch has answered if `pc_error_robot` is not -1. A program ends if there is
+// no memory left.
 //
-// A handle may move from thread to thread, and belongs to one at a time. Chains, tubes and motions
-// may be read by any number of threads. `pc_mesh_clone` gives each thread a mesh of its own, which
-// shares the triangles. A list belongs to the handle that was asked, until that handle is asked
-// again or freed.
+// A handle may move from thread to thread. Functions that take it as const may run at the same time
+// in any number of threads; any other function needs it alone. `pc_mesh_clone` gives each thread a
+// mesh of its own, which shares the triangles. A list belongs to the handle that was asked, until
+// that handle is asked again or freed.
 
 
 #ifndef PARRY_CONTINUUM_H
@@ -294,26 +296,6 @@ typedef struct {
   uint32_t links[2];
 } pc_robot_proximity;
 
-// Bounds on how near two tubes are, or on how near two motions come.
-typedef struct {
-  // The clearance is at least this.
-  double lower;
-  // The clearance is at most this: 0 where they touch or overlap.
-  double upper;
-  // The width of the bounds that stated errors cost and no finer tolerance removes.
-  double uncertainty;
-  // The time of the shapes that realise `upper`; 0 for tubes at rest.
-  double t;
-  // A point of the first robot.
-  double on_first[3];
-  // A point of the second robot, at most `upper` away.
-  double on_second[3];
-  // How far along the centreline of each from its base.
-  double arc_lengths[2];
-  // Whether the bounds are no farther apart than the tolerance and `uncertainty`.
-  bool resolved;
-} pc_robot_clearance;
-
 // Whether two moving robots, or two parts of one, keep a margin, and which shapes do not.
 typedef struct {
   // Whether the margin is kept at every time from 0 to 1.
@@ -333,6 +315,26 @@ typedef struct {
   // How far along the centreline of each from its base.
   double arc_lengths[2];
 } pc_robot_motion_answer;
+
+// Bounds on how near two tubes are, or on how near two motions come.
+typedef struct {
+  // The clearance is at least this.
+  double lower;
+  // The clearance is at most this: 0 where they touch or overlap.
+  double upper;
+  // The width of the bounds that stated errors cost and no finer tolerance removes.
+  double uncertainty;
+  // The time of the shapes that realise `upper`; 0 for tubes at rest.
+  double t;
+  // A point of the first robot.
+  double on_first[3];
+  // A point of the second robot, at most `upper` away.
+  double on_second[3];
+  // How far along the centreline of each from its base.
+  double arc_lengths[2];
+  // Whether the bounds are no farther apart than the tolerance and `uncertainty`.
+  bool resolved;
+} pc_robot_clearance;
 
 // A place in a scene: of a structure and a robot, of two robots, or of a robot and itself.
 typedef struct {
@@ -412,6 +414,18 @@ typedef struct {
   pc_scene_place place;
 } pc_scene_motion_answer;
 
+// Where a structure of a scene is at the end of a motion: at a pose, or with other vertices.
+typedef struct {
+  // The structure.
+  size_t structure;
+  // The pose to which it moves as a whole, or NULL.
+  const double *pose;
+  // The places to which its vertices move, in the mesh's frame, or NULL.
+  const double *vertices;
+  // How many vertices there are; 0 with a pose.
+  size_t vertex_count;
+} pc_structure_end;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -423,14 +437,14 @@ uint32_t pc_abi_version(void);
 const char *pc_version(void);
 
 // Returns the message of this thread's last error, in UTF-8: what is wrong, and what to change. It
-// is empty before the first error, and valid until the next one.
+// is empty before the first error, and valid until the thread's next one or the thread's end.
 const char *pc_error_message(void);
 
 // Returns the kind of this thread's last error, such as "point_not_finite". Programs can compare
-// it: it stays the same where a message becomes clearer.
+// it: it stays the same where a message becomes clearer. It is valid as long as the message.
 const char *pc_error_kind(void);
 
-// Returns which robot or motion of a batch this thread's last error is about, or -1.
+// Returns which robot, motion or set of a list this thread's last error is about, or -1.
 int64_t pc_error_robot(void);
 
 // Makes a mesh of `vertex_count` vertices and `triangle_count` triangles, which are three indices
@@ -489,6 +503,17 @@ pc_status pc_mesh_per_link(pc_mesh *mesh,
                            const pc_minimum **links,
                            size_t *count);
 
+// Finds where each link of each of `count` robots is closest, on all cores. The links of robot `k`
+// are `links[firsts[k]]` to `links[firsts[k + 1] - 1]`; a refused robot has none. `firsts` has
+// `count + 1` items. Both lists belong to the mesh.
+pc_status pc_mesh_per_link_batch(pc_mesh *mesh,
+                                 const pc_chain *const *robots,
+                                 const double *poses,
+                                 size_t count,
+                                 const pc_minimum **links,
+                                 const size_t **firsts,
+                                 pc_status *statuses);
+
 // Says whether a robot keeps more than the margin away.
 pc_status pc_mesh_clears(pc_mesh *mesh,
                          const pc_chain *robot,
@@ -504,6 +529,22 @@ pc_status pc_mesh_clears_batch(pc_mesh *mesh,
                                double margin,
                                bool *clears,
                                pc_status *statuses);
+
+// The same for `count` robots of `section_count` sections of constant curvature each, on all cores.
+// A section is three numbers: its length, and its curvature towards x and towards y. The radii are
+// those of all robots: one for each section, or a single one. A section becomes `segments` straight
+// links. `pose` is that of all bases.
+pc_status pc_mesh_clears_sections_batch(pc_mesh *mesh,
+                                        const double *sections,
+                                        size_t section_count,
+                                        const double *radii,
+                                        size_t radius_count,
+                                        size_t count,
+                                        size_t segments,
+                                        const double *pose,
+                                        double margin,
+                                        bool *clears,
+                                        pc_status *statuses);
 
 // Finds every contact within the margin: all local minima of the distance. Contacts
 // that rise by less than `prominence` before a nearer one are left out; 0 keeps all.
@@ -726,6 +767,28 @@ pc_status pc_pair_minimum_batch(const pc_pair *pair,
                                 pc_robot_proximity *minima,
                                 pc_status *statuses);
 
+// Says whether each of `count` pairs of robots keep more than the margin apart, on all cores, as
+// `pc_mesh_minimum_batch`.
+pc_status pc_pair_clears_batch(const pc_pair *pair,
+                               const pc_chain *const *robots_a,
+                               const double *poses_a,
+                               const pc_chain *const *robots_b,
+                               const double *poses_b,
+                               size_t count,
+                               double margin,
+                               bool *clears,
+                               pc_status *statuses);
+
+// The same for pairs of motions, at every time from 0 to 1.
+pc_status pc_pair_clears_motions_batch(const pc_pair *pair,
+                                       const pc_motion *const *motions_a,
+                                       const pc_motion *const *motions_b,
+                                       size_t count,
+                                       double margin,
+                                       double resolution,
+                                       pc_robot_motion_answer *answers,
+                                       pc_status *statuses);
+
 // Finds for each link of the first robot the closest link of the second.
 pc_status pc_pair_per_link(pc_pair *pair,
                            const pc_chain *robot_a,
@@ -883,8 +946,9 @@ pc_status pc_scene_new(double robot_margin, double self_margin, pc_scene **scene
 // Frees a scene. The meshes that were added stay.
 void pc_scene_free(pc_scene *scene);
 
-// Adds a clone of a mesh as a structure. `name` is for messages, `margin` NaN is none: the
-// structure is then reported and never tested. `pose` leads from the mesh's frame to the scene's.
+// Adds a clone of a mesh as a structure. Each structure has its own `name`, which messages use.
+// `margin` NaN is none: the structure is then reported and never tested. `pose` leads from the
+// mesh's frame to the scene's. Structures count from 0. After an error the scene is as it was.
 pc_status pc_scene_add(pc_scene *scene,
                        const char *name,
                        const pc_mesh *mesh,
@@ -892,8 +956,43 @@ pc_status pc_scene_add(pc_scene *scene,
                        const double *pose,
                        size_t *structure);
 
-// Changes the margin of a structure; NaN is none.
+// Changes the margin of a structure; NaN is none. Margins from single robots stay.
 pc_status pc_scene_set_margin(pc_scene *scene, size_t structure, double margin);
+
+// Says how far a robot must be from a structure; NaN is none. `robot` is its place in the lists of
+// robots of the questions.
+pc_status pc_scene_margin_between(const pc_scene *scene,
+                                  size_t structure,
+                                  size_t robot,
+                                  double *margin);
+
+// Sets the margin between a structure and one robot, in place of the structure's margin. NaN is
+// none: the two may touch.
+pc_status pc_scene_set_margin_between(pc_scene *scene,
+                                      size_t structure,
+                                      size_t robot,
+                                      double margin);
+
+// Changes the margin between two robots; NaN is none.
+pc_status pc_scene_set_robot_margin(pc_scene *scene, double margin);
+
+// Changes the margin of a robot and itself; NaN is none.
+pc_status pc_scene_set_self_margin(pc_scene *scene, double margin);
+
+// Sets the pairs of robots that are nested, as a tube in the tube that guides it, in place of
+// earlier ones. Nested robots touch, so they are not tested against each other. `pairs` is two
+// places in the lists of robots for each pair.
+pc_status pc_scene_set_nested(pc_scene *scene, const size_t *pairs, size_t pair_count);
+
+// Says whether a structure is solid.
+pc_status pc_scene_is_solid(const pc_scene *scene, size_t structure, bool *is_solid);
+
+// Makes a structure solid, or with 0 a surface, as it is at first. A robot inside of a solid
+// structure is in contact with it. Its mesh must be closed, and all triangles face the same way.
+pc_status pc_scene_set_solid(pc_scene *scene, size_t structure, uint32_t is_solid);
+
+// Builds all that later questions need, so that none of them builds anything.
+pc_status pc_scene_prepare(const pc_scene *scene);
 
 // Moves a structure.
 pc_status pc_scene_set_pose(pc_scene *scene, size_t structure, const double *pose);
@@ -911,12 +1010,34 @@ pc_status pc_scene_clears(pc_scene *scene,
                           size_t count,
                           bool *clears);
 
+// Says whether each of `count` sets of `robot_count` robots keeps all margins, on all cores.
+// `robots` has the sets one after another; so has `poses`, or it is NULL. The answer of a refused
+// set is false, and its status is not `PC_OK`; `statuses` may be NULL. The first such set is the
+// error.
+pc_status pc_scene_clears_batch(const pc_scene *scene,
+                                const pc_chain *const *robots,
+                                const double *poses,
+                                size_t robot_count,
+                                size_t count,
+                                bool *clears,
+                                pc_status *statuses);
+
 // Finds the least slack: the least distance less the margin.
 pc_status pc_scene_tightest(pc_scene *scene,
                             const pc_chain *const *robots,
                             const double *poses,
                             size_t count,
                             pc_tightest *tightest);
+
+// The same for `count` sets of robots, on all cores, as `pc_scene_clears_batch`. The answer of a
+// refused set is NaN.
+pc_status pc_scene_tightest_batch(const pc_scene *scene,
+                                  const pc_chain *const *robots,
+                                  const double *poses,
+                                  size_t robot_count,
+                                  size_t count,
+                                  pc_tightest *tightest,
+                                  pc_status *statuses);
 
 // Finds where the robots are closest to each structure.
 pc_status pc_scene_per_structure(pc_scene *scene,
@@ -958,6 +1079,25 @@ pc_status pc_scene_clears_motion(pc_scene *scene,
                                  size_t count,
                                  double resolution,
                                  pc_scene_motion_answer *answer);
+
+// The same for `count` sets of `robot_count` motions, on all cores, as `pc_scene_clears_batch`.
+pc_status pc_scene_clears_motion_batch(const pc_scene *scene,
+                                       const pc_motion *const *motions,
+                                       size_t robot_count,
+                                       size_t count,
+                                       double resolution,
+                                       pc_scene_motion_answer *answers,
+                                       pc_status *statuses);
+
+// The same while `end_count` structures move too, to their `ends`. A structure that is not listed
+// rests. The scene itself stays as it is.
+pc_status pc_scene_clears_motion_while(pc_scene *scene,
+                                       const pc_structure_end *ends,
+                                       size_t end_count,
+                                       const pc_motion *const *motions,
+                                       size_t count,
+                                       double resolution,
+                                       pc_scene_motion_answer *answer);
 
 // Finds the first time at which a margin is not kept, within `resolution`.
 pc_status pc_scene_time_of_contact(pc_scene *scene,

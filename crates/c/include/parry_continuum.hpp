@@ -109,12 +109,20 @@ auto raw(const std::vector<const T*>& objects) {
 
 }  // namespace detail
 
-/// Points without a copy: a vector of points, a vector of 3 N numbers, a pointer and a count, or a
-/// 3 x N matrix of Eigen's.
+/// Points without a copy: a vector of points (`std::array<double, 3>`, `Eigen::Vector3d`), a vector
+/// of 3 N numbers, a pointer and a count, or a 3 x N matrix of Eigen's.
 class Points {
 public:
     Points(const double* data, std::size_t count) : data_(data), count_(count) {}
     Points(const std::vector<std::array<double, 3>>& points)
+        : data_(points.empty() ? nullptr : points.front().data()), count_(points.size()) {}
+    /// Points of another type with `data()`, such as `Eigen::Vector3d`.
+    template <class Point,
+              std::enable_if_t<sizeof(Point) == 3 * sizeof(double) &&
+                                   std::is_same_v<decltype(std::declval<const Point&>().data()),
+                                                  const double*>,
+                               int> = 0>
+    Points(const std::vector<Point>& points)
         : data_(points.empty() ? nullptr : points.front().data()), count_(points.size()) {}
     Points(const std::vector<double>& numbers) : data_(numbers.data()), count_(numbers.size() / 3) {
         if (numbers.size() % 3 != 0)
@@ -301,10 +309,54 @@ private:
     detail::Handle<pc_motion, pc_motion_free> handle_;
 };
 
-/// The answers of a batch. The answer of a refused robot is NaN, and its status is not `PC_OK`.
+/// The answers of a batch. The answer of a refused item is NaN or 0, and its status is not `PC_OK`.
 template <class Answer>
 struct Batch {
     std::vector<Answer> answers;
+    std::vector<pc_status> statuses;
+    /// The message of the first refused item, or empty.
+    std::string message;
+};
+
+namespace detail {
+
+/// Asks about `count` items. Items that are refused have their own status; what concerns all is
+/// thrown.
+template <class Answer, class Ask>
+Batch<Answer> batch(std::size_t count, Ask ask) {
+    Batch<Answer> found;
+    found.answers.resize(count);
+    found.statuses.assign(count, PC_OK);
+    const pc_status status = ask(found.answers.data(), found.statuses.data());
+    if (status != PC_OK && (status != PC_REFUSED || pc_error_robot() < 0))
+        check(status);
+    if (status != PC_OK)
+        found.message = pc_error_message();
+    return found;
+}
+
+/// The same about robots at poses.
+template <class Answer, class Robot, class Ask>
+Batch<Answer> batch(const std::vector<const Robot*>& robots, const std::vector<Pose>& poses,
+                    Ask ask) {
+    const auto handles = raw(robots);
+    const auto numbers = matrices(poses, robots.size());
+    return batch<Answer>(robots.size(), [&](auto answers, auto statuses) {
+        return ask(handles.data(), or_null(numbers), answers, statuses);
+    });
+}
+
+/// Refuses two lists that belong together and have other sizes.
+inline void check_sizes(std::size_t one, std::size_t other, const char* text) {
+    if (one != other)
+        throw Error(PC_BAD_ARGUMENT, "bad_length", text, -1);
+}
+
+}  // namespace detail
+
+/// The links of the robots of a batch. A refused robot has none, and its status is not `PC_OK`.
+struct LinksBatch {
+    std::vector<std::vector<pc_minimum>> links;
     std::vector<pc_status> statuses;
     /// The message of the first refused robot, or empty.
     std::string message;
@@ -454,46 +506,78 @@ public:
 
     Batch<Minimum> minimum_batch(const std::vector<const Chain*>& robots,
                                  const std::vector<Pose>& poses = {}) {
-        return batch<Minimum>(robots, poses, [&](auto handles, auto numbers, auto answers,
-                                                 auto statuses) {
-            return pc_mesh_minimum_batch(handle_.get(), handles, numbers, robots.size(), answers,
-                                         statuses);
-        });
+        return detail::batch<Minimum>(
+            robots, poses, [&](auto handles, auto numbers, auto answers, auto statuses) {
+                return pc_mesh_minimum_batch(handle_.get(), handles, numbers, robots.size(),
+                                             answers, statuses);
+            });
     }
     /// The items of `answers` are 0 or 1.
     Batch<std::uint8_t> clears_batch(const std::vector<const Chain*>& robots, double margin,
                                      const std::vector<Pose>& poses = {}) {
         static_assert(sizeof(bool) == 1, "a bool of C is a byte");
-        return batch<std::uint8_t>(robots, poses, [&](auto handles, auto numbers, auto answers,
-                                                      auto statuses) {
-            return pc_mesh_clears_batch(handle_.get(), handles, numbers, robots.size(), margin,
-                                        reinterpret_cast<bool*>(answers), statuses);
-        });
+        return detail::batch<std::uint8_t>(
+            robots, poses, [&](auto handles, auto numbers, auto answers, auto statuses) {
+                return pc_mesh_clears_batch(handle_.get(), handles, numbers, robots.size(), margin,
+                                            reinterpret_cast<bool*>(answers), statuses);
+            });
+    }
+    /// Each link of each robot.
+    LinksBatch per_link_batch(const std::vector<const Chain*>& robots,
+                              const std::vector<Pose>& poses = {}) {
+        const Minimum* links = nullptr;
+        const std::size_t* firsts = nullptr;
+        auto found = detail::batch<char>(
+            robots, poses, [&](auto handles, auto numbers, auto, auto statuses) {
+                return pc_mesh_per_link_batch(handle_.get(), handles, numbers, robots.size(),
+                                              &links, &firsts, statuses);
+            });
+        LinksBatch answer{{}, std::move(found.statuses), std::move(found.message)};
+        for (std::size_t k = 0; k < robots.size(); ++k)
+            answer.links.emplace_back(links + firsts[k], links + firsts[k + 1]);
+        return answer;
+    }
+    /// Robots of sections of constant curvature, `section_count` each and one after another:
+    /// length, curvature towards x and towards y. A section becomes `segments` straight links. The
+    /// items of `answers` are 0 or 1.
+    Batch<std::uint8_t> clears_sections_batch(Points sections, std::size_t section_count,
+                                              const Radii& radii, std::size_t segments,
+                                              double margin, const Pose& pose = {}) {
+        const std::size_t count = section_count == 0 ? 0 : sections.size() / section_count;
+        detail::check_sizes(count * section_count, sections.size(),
+                            "`sections` are no multiple of `section_count`");
+        return detail::batch<std::uint8_t>(
+            count, [&](auto answers, auto statuses) {
+                return pc_mesh_clears_sections_batch(handle_.get(), sections.data(), section_count,
+                                                     radii.data(), radii.size(), count, segments,
+                                                     pose.data(), margin,
+                                                     reinterpret_cast<bool*>(answers), statuses);
+            });
     }
     Batch<Clearance> clearance_batch(const std::vector<const Tube*>& tubes, double tolerance,
                                      const std::vector<Pose>& poses = {}) {
-        return batch<Clearance>(tubes, poses, [&](auto handles, auto numbers, auto answers,
-                                                  auto statuses) {
-            return pc_mesh_clearance_batch(handle_.get(), handles, numbers, tubes.size(),
-                                           tolerance, answers, statuses);
-        });
+        return detail::batch<Clearance>(
+            tubes, poses, [&](auto handles, auto numbers, auto answers, auto statuses) {
+                return pc_mesh_clearance_batch(handle_.get(), handles, numbers, tubes.size(),
+                                               tolerance, answers, statuses);
+            });
     }
     /// The items of `answers` are `PC_CLEAR`, `PC_CONTACT` or `PC_UNDECIDED`.
     Batch<pc_decision> clears_tube_batch(const std::vector<const Tube*>& tubes, double margin,
                                          double resolution, const std::vector<Pose>& poses = {}) {
-        return batch<pc_decision>(tubes, poses, [&](auto handles, auto numbers, auto answers,
-                                                    auto statuses) {
-            return pc_mesh_clears_tube_batch(handle_.get(), handles, numbers, tubes.size(), margin,
-                                             resolution, answers, statuses);
-        });
+        return detail::batch<pc_decision>(
+            tubes, poses, [&](auto handles, auto numbers, auto answers, auto statuses) {
+                return pc_mesh_clears_tube_batch(handle_.get(), handles, numbers, tubes.size(),
+                                                 margin, resolution, answers, statuses);
+            });
     }
     Batch<MotionAnswer> clears_motion_batch(const std::vector<const Motion*>& motions,
                                             double margin, double resolution) {
-        return batch<MotionAnswer>(motions, {}, [&](auto handles, auto, auto answers,
-                                                    auto statuses) {
-            return pc_mesh_clears_motion_batch(handle_.get(), handles, motions.size(), margin,
-                                               resolution, answers, statuses);
-        });
+        return detail::batch<MotionAnswer>(
+            motions, {}, [&](auto handles, auto, auto answers, auto statuses) {
+                return pc_mesh_clears_motion_batch(handle_.get(), handles, motions.size(), margin,
+                                                   resolution, answers, statuses);
+            });
     }
 
     /// Writes a proof to `path`, and the mesh beside it. False if the margin is not kept.
@@ -521,23 +605,6 @@ public:
 
 private:
     explicit Mesh(pc_mesh* handle) : handle_(handle) {}
-    template <class Answer, class Robot, class Ask>
-    static Batch<Answer> batch(const std::vector<const Robot*>& robots,
-                               const std::vector<Pose>& poses, Ask ask) {
-        const auto handles = detail::raw(robots);
-        const auto numbers = detail::matrices(poses, robots.size());
-        Batch<Answer> found;
-        found.answers.resize(robots.size());
-        found.statuses.assign(robots.size(), PC_OK);
-        const pc_status status = ask(handles.data(), detail::or_null(numbers),
-                                     found.answers.data(), found.statuses.data());
-        // Robots that are refused have their own status; what concerns all is thrown.
-        if (status != PC_OK && (status != PC_REFUSED || pc_error_robot() < 0))
-            check(status);
-        if (status != PC_OK)
-            found.message = pc_error_message();
-        return found;
-    }
     detail::Handle<pc_mesh, pc_mesh_free> handle_;
 };
 
@@ -616,7 +683,55 @@ public:
         return found;
     }
 
+    Batch<RobotProximity> minimum_batch(const std::vector<const Chain*>& robots_a,
+                                        const std::vector<const Chain*>& robots_b,
+                                        const std::vector<Pose>& poses_a = {},
+                                        const std::vector<Pose>& poses_b = {}) const {
+        return batch<RobotProximity>(robots_a, robots_b, poses_a, poses_b, pc_pair_minimum_batch);
+    }
+    /// The items of `answers` are 0 or 1.
+    Batch<std::uint8_t> clears_batch(const std::vector<const Chain*>& robots_a,
+                                     const std::vector<const Chain*>& robots_b, double margin,
+                                     const std::vector<Pose>& poses_a = {},
+                                     const std::vector<Pose>& poses_b = {}) const {
+        return batch<std::uint8_t>(
+            robots_a, robots_b, poses_a, poses_b,
+            [margin](auto pair, auto a, auto at_a, auto b, auto at_b, auto count, auto answers,
+                     auto statuses) {
+                return pc_pair_clears_batch(pair, a, at_a, b, at_b, count, margin,
+                                            reinterpret_cast<bool*>(answers), statuses);
+            });
+    }
+    Batch<RobotMotionAnswer> clears_motions_batch(const std::vector<const Motion*>& motions_a,
+                                                  const std::vector<const Motion*>& motions_b,
+                                                  double margin, double resolution) const {
+        detail::check_sizes(motions_a.size(), motions_b.size(), "give as many motions twice");
+        const auto a = detail::raw(motions_a);
+        const auto b = detail::raw(motions_b);
+        return detail::batch<RobotMotionAnswer>(
+            a.size(), [&](auto answers, auto statuses) {
+                return pc_pair_clears_motions_batch(handle_.get(), a.data(), b.data(), a.size(),
+                                                    margin, resolution, answers, statuses);
+            });
+    }
+
 private:
+    template <class Answer, class Ask>
+    Batch<Answer> batch(const std::vector<const Chain*>& robots_a,
+                        const std::vector<const Chain*>& robots_b,
+                        const std::vector<Pose>& poses_a, const std::vector<Pose>& poses_b,
+                        Ask ask) const {
+        detail::check_sizes(robots_a.size(), robots_b.size(), "give as many robots twice");
+        const auto a = detail::raw(robots_a);
+        const auto b = detail::raw(robots_b);
+        const auto at_a = detail::matrices(poses_a, a.size());
+        const auto at_b = detail::matrices(poses_b, b.size());
+        return detail::batch<Answer>(
+            a.size(), [&](auto answers, auto statuses) {
+                return ask(handle_.get(), a.data(), detail::or_null(at_a), b.data(),
+                           detail::or_null(at_b), a.size(), answers, statuses);
+            });
+    }
     detail::Handle<pc_pair, pc_pair_free> handle_;
 };
 
@@ -655,6 +770,32 @@ private:
     detail::Handle<pc_self_query, pc_self_query_free> handle_;
 };
 
+/// Where a structure of a scene is at the end of a motion.
+class StructureEnd {
+public:
+    /// It moves as a whole.
+    static StructureEnd pose(std::size_t structure, const Pose& pose) {
+        return {pose, {structure, nullptr, nullptr, 0}, true};
+    }
+    /// Its vertices move. They are not copied.
+    static StructureEnd vertices(std::size_t structure, Points vertices) {
+        return {{}, {structure, nullptr, vertices.data(), vertices.size()}, false};
+    }
+    /// Valid as long as this object.
+    pc_structure_end get() const noexcept {
+        pc_structure_end end = end_;
+        end.pose = has_pose_ ? pose_.rows().data() : nullptr;
+        return end;
+    }
+
+private:
+    StructureEnd(const Pose& pose, pc_structure_end end, bool has_pose)
+        : pose_(pose), end_(end), has_pose_(has_pose) {}
+    Pose pose_;
+    pc_structure_end end_;
+    bool has_pose_;
+};
+
 /// Several meshes, each with its margin or `none`, and several robots.
 class Scene {
 public:
@@ -677,6 +818,37 @@ public:
     void set_margin(std::size_t structure, double margin) {
         check(pc_scene_set_margin(handle_.get(), structure, margin));
     }
+    /// Between a structure and one robot, by its place in the lists of robots, or `none`.
+    double margin_between(std::size_t structure, std::size_t robot) const {
+        double margin;
+        check(pc_scene_margin_between(handle_.get(), structure, robot, &margin));
+        return margin;
+    }
+    void set_margin_between(std::size_t structure, std::size_t robot, double margin) {
+        check(pc_scene_set_margin_between(handle_.get(), structure, robot, margin));
+    }
+    void set_robot_margin(double margin) {
+        check(pc_scene_set_robot_margin(handle_.get(), margin));
+    }
+    void set_self_margin(double margin) {
+        check(pc_scene_set_self_margin(handle_.get(), margin));
+    }
+    /// Pairs of robots of which one is inside the other.
+    void set_nested(const std::vector<std::array<std::size_t, 2>>& pairs) {
+        check(pc_scene_set_nested(handle_.get(), pairs.empty() ? nullptr : pairs.front().data(),
+                                  pairs.size()));
+    }
+    bool is_solid(std::size_t structure) const {
+        bool solid;
+        check(pc_scene_is_solid(handle_.get(), structure, &solid));
+        return solid;
+    }
+    /// A robot inside of a solid structure is in contact with it.
+    void set_solid(std::size_t structure, bool is_solid = true) {
+        check(pc_scene_set_solid(handle_.get(), structure, is_solid));
+    }
+    /// Builds all that later questions need.
+    void prepare() const { check(pc_scene_prepare(handle_.get())); }
     void set_pose(std::size_t structure, const Pose& pose) {
         check(pc_scene_set_pose(handle_.get(), structure, pose.data()));
     }
@@ -745,6 +917,18 @@ public:
                                      &found));
         return found;
     }
+    /// While structures move, too.
+    SceneMotionAnswer clears_motion_while(const std::vector<StructureEnd>& ends,
+                                          const Motions& motions, double resolution) {
+        std::vector<pc_structure_end> raw_ends;
+        for (const StructureEnd& end : ends)
+            raw_ends.push_back(end.get());
+        const auto handles = detail::raw(motions);
+        SceneMotionAnswer found;
+        check(pc_scene_clears_motion_while(handle_.get(), raw_ends.data(), raw_ends.size(),
+                                           handles.data(), handles.size(), resolution, &found));
+        return found;
+    }
     SceneMotionAnswer time_of_contact(const Motions& motions, double resolution) {
         const auto handles = detail::raw(motions);
         SceneMotionAnswer found;
@@ -760,7 +944,49 @@ public:
         return found;
     }
 
+    /// Sets of `robot_count` robots, one after another. The items of `answers` are 0 or 1.
+    Batch<std::uint8_t> clears_batch(const Chains& robots, std::size_t robot_count,
+                                     const std::vector<Pose>& poses = {}) const {
+        return batch<std::uint8_t>(robots, robot_count, poses, [&](auto handles, auto numbers,
+                                                                   auto count, auto answers,
+                                                                   auto statuses) {
+            return pc_scene_clears_batch(handle_.get(), handles, numbers, robot_count, count,
+                                         reinterpret_cast<bool*>(answers), statuses);
+        });
+    }
+    Batch<Tightest> tightest_batch(const Chains& robots, std::size_t robot_count,
+                                   const std::vector<Pose>& poses = {}) const {
+        return batch<Tightest>(robots, robot_count, poses, [&](auto handles, auto numbers,
+                                                               auto count, auto answers,
+                                                               auto statuses) {
+            return pc_scene_tightest_batch(handle_.get(), handles, numbers, robot_count, count,
+                                           answers, statuses);
+        });
+    }
+    Batch<SceneMotionAnswer> clears_motion_batch(const Motions& motions, std::size_t robot_count,
+                                                 double resolution) const {
+        return batch<SceneMotionAnswer>(motions, robot_count, {}, [&](auto handles, auto,
+                                                                      auto count, auto answers,
+                                                                      auto statuses) {
+            return pc_scene_clears_motion_batch(handle_.get(), handles, robot_count, count,
+                                                resolution, answers, statuses);
+        });
+    }
+
 private:
+    template <class Answer, class Robot, class Ask>
+    static Batch<Answer> batch(const std::vector<const Robot*>& robots, std::size_t robot_count,
+                               const std::vector<Pose>& poses, Ask ask) {
+        const std::size_t count = robot_count == 0 ? 0 : robots.size() / robot_count;
+        detail::check_sizes(count * robot_count, robots.size(),
+                            "the robots are no multiple of `robot_count`");
+        const auto handles = detail::raw(robots);
+        const auto numbers = detail::matrices(poses, robots.size());
+        return detail::batch<Answer>(
+            count, [&](auto answers, auto statuses) {
+                return ask(handles.data(), detail::or_null(numbers), count, answers, statuses);
+            });
+    }
     detail::Handle<pc_scene, pc_scene_free> handle_;
 };
 

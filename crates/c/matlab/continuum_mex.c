@@ -162,10 +162,17 @@ static char *text_of(const mxArray *array, const char *name) {
 
 typedef struct {
     double margin, resolution, tolerance, prominence, deviation, turn, label, scale;
-    double robot_margin, self_margin;
+    double robot_margin, self_margin, segments;
     const mxArray *pose, *pose_a, *pose_b, *start_pose, *end_pose, *tangents;
     const char *caps, *frame, *file;
 } options_t;
+
+/* Whether two names are equal but for upper and lower case, as those of MATLAB's options are. */
+static bool is_same(const char *name, const char *given) {
+    for (; *name != '\0' && *name == (*given | (*given >= 'A' && *given <= 'Z' ? 32 : 0)); ++name)
+        ++given;
+    return *name == '\0' && *given == '\0';
+}
 
 static options_t options_of(int count, const mxArray *const *given) {
     options_t options;
@@ -181,6 +188,7 @@ static options_t options_of(int count, const mxArray *const *given) {
     memset(&options, 0, sizeof options);
     options.margin = options.resolution = options.tolerance = options.turn = none;
     options.robot_margin = options.self_margin = none;
+    options.segments = 1;
     options.label = -1;
     options.scale = 1;
 #define KNOWN(field, slot) \
@@ -189,17 +197,19 @@ static options_t options_of(int count, const mxArray *const *given) {
     KNOWN(margin, number), KNOWN(resolution, number), KNOWN(tolerance, number);
     KNOWN(prominence, number), KNOWN(deviation, number), KNOWN(turn, number);
     KNOWN(label, number), KNOWN(scale, number), KNOWN(robot_margin, number);
-    KNOWN(self_margin, number), KNOWN(pose, array), KNOWN(pose_a, array), KNOWN(pose_b, array);
+    KNOWN(self_margin, number), KNOWN(segments, number), KNOWN(pose, array);
+    KNOWN(pose_a, array), KNOWN(pose_b, array);
     KNOWN(start_pose, array), KNOWN(end_pose, array), KNOWN(tangents, array);
     KNOWN(caps, text), KNOWN(frame, text), KNOWN(file, text);
 #undef KNOWN
-    if (count % 2 != 0) fail("bad_options", "options are pairs of a name and a value");
+    if (count % 2 != 0) fail("bad_options", "options are pairs of a name and a value, such as 'margin', 1");
     for (; count > 0; count -= 2, given += 2) {
         const char *name = text_of(given[0], "the name of an option");
-        for (k = 0; k < names && strcmp(known[k].name, name) != 0; ++k) {
+        for (k = 0; k < names && !is_same(known[k].name, name); ++k) {
         }
         if (k == names) {
-            snprintf(text, sizeof text, "there is no option `%.60s`", name);
+            snprintf(text, sizeof text, "there is no option `%.60s`; see the help of this function",
+                     name);
             fail("bad_options", text);
         } else if (known[k].text != NULL) {
             *known[k].text = text_of(given[1], name);
@@ -250,7 +260,9 @@ static double *poses_of(const mxArray *array, size_t count, const char *name) {
     size_t robot;
     char text[128];
     if (array == NULL) return NULL;
-    rows = rows_of(array, 4, name);
+    rows.rows = rows.batch = 0;
+    if (mxGetDimensions(array)[0] == 4 && mxGetDimensions(array)[1] == 4)
+        rows = rows_of(array, 4, name);
     if (rows.rows != 4 || (rows.batch != 1 && rows.batch != count)) {
         snprintf(text, sizeof text, "`%s` must be 4 x 4, or 4 x 4 x %lu", name,
                  (unsigned long)count);
@@ -292,11 +304,17 @@ static robots_t robots_of(const mxArray *points, const mxArray *radii, uint32_t 
     robots_t robots = points_of(points, radii);
     pc_status status = PC_OK;
     size_t k;
+    char text[512];
     robots.chains = (pc_chain **)mxCalloc(robots.points.batch, sizeof(pc_chain *));
     for (k = 0; k < robots.points.batch && status == PC_OK; ++k)
         status = pc_chain_new(robots.points.data + 3 * k * robots.points.rows, robots.points.rows,
                               robots.radii, robots.radius_count, caps, robots.chains + k);
     if (status != PC_OK) free_chains(&robots);
+    if (status != PC_OK && robots.points.batch > 1) {
+        /* Which robot of a batch, counted as the library does. */
+        snprintf(text, sizeof text, "robot %lu: %s", (unsigned long)(k - 1), pc_error_message());
+        fail(pc_error_kind(), text);
+    }
     check(status);
     return robots;
 }
@@ -354,14 +372,32 @@ static const field_t ROBOT_PROXIMITY[] = {
     FIELD(pc_robot_proximity, distance, 'd', 1), FIELD(pc_robot_proximity, on_first, 'd', 3),
     FIELD(pc_robot_proximity, on_second, 'd', 3), FIELD(pc_robot_proximity, links, 'u', 2),
     FIELD(pc_robot_proximity, arc_lengths, 'd', 2), END};
-static const field_t TIGHTEST[] = {
-    FIELD(pc_tightest, slack, 'd', 1),
-    {"structure", 'u', offsetof(pc_tightest, place.structure), 1},
-    {"robots", 'u', offsetof(pc_tightest, place.robots), 2},
-    {"on_first", 'd', offsetof(pc_tightest, place.on_first), 3},
-    {"on_second", 'd', offsetof(pc_tightest, place.on_second), 3},
-    {"arc_lengths", 'd', offsetof(pc_tightest, place.arc_lengths), 2},
-    {"triangle", 'u', offsetof(pc_tightest, place.triangle), 1},
+#define SCENE_PLACE(answer)                                      \
+    {"structure", 'u', offsetof(answer, place.structure), 1},        \
+        {"robots", 'u', offsetof(answer, place.robots), 2},          \
+        {"on_first", 'd', offsetof(answer, place.on_first), 3},      \
+        {"on_second", 'd', offsetof(answer, place.on_second), 3},    \
+        {"arc_lengths", 'd', offsetof(answer, place.arc_lengths), 2}, \
+        {"triangle", 'u', offsetof(answer, place.triangle), 1}, END
+static const field_t TIGHTEST[] = {FIELD(pc_tightest, slack, 'd', 1), SCENE_PLACE(pc_tightest)};
+static const field_t SCENE_MOTION_ANSWER[] = {
+    {"is_clear", 'c', offsetof(pc_scene_motion_answer, decision), 1},
+    FIELD(pc_scene_motion_answer, decision, 'e', 1),
+    FIELD(pc_scene_motion_answer, reason, 'e', 1),
+    FIELD(pc_scene_motion_answer, interval, 'd', 2),
+    FIELD(pc_scene_motion_answer, t, 'd', 1),
+    FIELD(pc_scene_motion_answer, upper, 'd', 1),
+    SCENE_PLACE(pc_scene_motion_answer)};
+static const field_t STRUCTURE[] = {
+    FIELD(pc_structure_proximity, structure, 'u', 1),
+    FIELD(pc_structure_proximity, robot, 'u', 1),
+    FIELD(pc_structure_proximity, slack, 'd', 1),
+    {"distance", 'd', offsetof(pc_structure_proximity, nearest.distance), 1},
+    {"on_robot", 'd', offsetof(pc_structure_proximity, nearest.on_robot), 3},
+    {"on_mesh", 'd', offsetof(pc_structure_proximity, nearest.on_mesh), 3},
+    {"segment", 'u', offsetof(pc_structure_proximity, nearest.segment), 1},
+    {"arc_length", 'd', offsetof(pc_structure_proximity, nearest.arc_length), 1},
+    {"triangle", 'u', offsetof(pc_structure_proximity, nearest.triangle), 1},
     END};
 static const field_t SURFACE[] = {
     FIELD(pc_surface, is_sound, 'b', 1),          FIELD(pc_surface, vertices, 's', 1),
@@ -541,11 +577,56 @@ static one_t one_with_margin(int count, const mxArray *const *given) {
 }
 
 COMMAND(per_link) {
-    one_t one = one_of(count, given);
+    pc_mesh *mesh;
+    options_t options;
+    robots_t robots;
+    double *poses;
     const pc_minimum *links;
-    size_t many;
-    done(&one, pc_mesh_per_link(one.mesh, one.chain, one.pose, &links, &many));
-    return answers(MINIMUM, links, sizeof *links, many);
+    const size_t *firsts;
+    pc_status status;
+    mxArray *found, *which;
+    size_t robot, link;
+    NEEDS(3, "a mesh, points and radii");
+    mesh = mesh_of(given[0]);
+    options = options_of(count - 3, given + 3);
+    robots = points_of(given[1], given[2]);
+    poses = poses_of(options.pose, robots.points.batch, "pose");
+    robots = robots_of(given[1], given[2], caps_of(&options));
+    status = pc_mesh_per_link_batch(mesh, (const pc_chain *const *)robots.chains, poses,
+                                    robots.points.batch, &links, &firsts, NULL);
+    free_chains(&robots);
+    check(status);
+    found = answers(MINIMUM, links, sizeof *links, firsts[robots.points.batch]);
+    which = mxCreateDoubleMatrix(firsts[robots.points.batch], 1, mxREAL);
+    for (robot = 0; robot < robots.points.batch; ++robot)
+        for (link = firsts[robot]; link < firsts[robot + 1]; ++link)
+            mxGetPr(which)[link] = (double)robot + 1;
+    mxAddField(found, "robot");
+    mxSetField(found, 0, "robot", which);
+    return found;
+}
+
+COMMAND(clears_sections) {
+    pc_mesh *mesh;
+    options_t options;
+    rows_t sections;
+    double *pose;
+    mxArray *found;
+    NEEDS(3, "a mesh, sections and radii");
+    mesh = mesh_of(given[0]);
+    sections = rows_of(given[1], 3, "sections");
+    check_double(given[2], "radii");
+    options = options_of(count - 3, given + 3);
+    needed(options.margin, "margin");
+    if (!(options.segments >= 1 && options.segments <= 1e6))
+        fail("bad_options", "`segments` must be a number of links, from 1 to 1000000");
+    pose = poses_of(options.pose, 1, "pose");
+    found = mxCreateLogicalMatrix(sections.batch, 1);
+    check(pc_mesh_clears_sections_batch(
+        mesh, sections.data, sections.rows, mxGetPr(given[2]), mxGetNumberOfElements(given[2]),
+        sections.batch, (size_t)options.segments, pose, options.margin,
+        (bool *)mxGetLogicals(found), NULL));
+    return found;
 }
 
 COMMAND(contacts_within) {
@@ -764,6 +845,23 @@ COMMAND(clears_motion) { return ask_motion(count, given, pc_mesh_clears_motion);
 
 COMMAND(time_of_contact) { return ask_motion(count, given, pc_mesh_time_of_contact); }
 
+COMMAND(clears_motion_while) {
+    options_t options;
+    rows_t vertices;
+    const pc_motion *motion;
+    pc_mesh *mesh;
+    pc_motion_answer found;
+    NEEDS(3, "a mesh, vertices and a motion");
+    mesh = mesh_of(given[0]);
+    vertices = rows_of(given[1], 3, "vertices");
+    motion = (const pc_motion *)handle_at(given[2], 0, MOTION);
+    options = options_of(count - 3, given + 3);
+    check(pc_mesh_clears_motion_while(mesh, vertices.data, vertices.rows, motion,
+                                      needed(options.margin, "margin"),
+                                      needed(options.resolution, "resolution"), &found));
+    return ONE(MOTION_ANSWER, found);
+}
+
 COMMAND(clearance_of_motion) {
     options_t options;
     const pc_motion *motion;
@@ -868,52 +966,149 @@ COMMAND(scene_add) {
     return mxCreateDoubleScalar((double)structure + 1);
 }
 
-/* The robots of a scene: a cell array with points, radii and a pose or [] in each row. */
+static pc_scene *scene_of(const mxArray *array) { return (pc_scene *)handle_at(array, 0, SCENE); }
+
+/* A number from 1, as the library counts it. */
+static size_t index_of(const mxArray *array, const char *name) {
+    char text[128];
+    double index;
+    check_double(array, name);
+    index = mxGetNumberOfElements(array) == 1 ? mxGetScalar(array) : 0;
+    if (!(index >= 1 && index <= 4294967295.0 && index == floor(index))) {
+        snprintf(text, sizeof text, "`%s` must be one whole number from 1", name);
+        fail("bad_index", text);
+    }
+    return (size_t)index - 1;
+}
+
+/* A margin; [] is none. */
+static double margin_of(const mxArray *array) {
+    check_double(array, "margin");
+    if (mxIsEmpty(array)) return mxGetNaN();
+    if (mxGetNumberOfElements(array) != 1) fail("bad_shape", "`margin` must be one number, or []");
+    return mxGetScalar(array);
+}
+
+COMMAND(scene_set_margin) {
+    NEEDS(3, "a scene, a structure and a margin");
+    check(pc_scene_set_margin(scene_of(given[0]), index_of(given[1], "structure"),
+                              margin_of(given[2])));
+    return NULL;
+}
+
+COMMAND(scene_margin_between) {
+    double margin;
+    NEEDS(3, "a scene, a structure and a robot");
+    check(pc_scene_margin_between(scene_of(given[0]), index_of(given[1], "structure"),
+                                  index_of(given[2], "robot"), &margin));
+    return mxCreateDoubleScalar(margin);
+}
+
+COMMAND(scene_set_margin_between) {
+    NEEDS(4, "a scene, a structure, a robot and a margin");
+    check(pc_scene_set_margin_between(scene_of(given[0]), index_of(given[1], "structure"),
+                                      index_of(given[2], "robot"), margin_of(given[3])));
+    return NULL;
+}
+
+COMMAND(scene_is_solid) {
+    bool is_solid;
+    NEEDS(2, "a scene and a structure");
+    check(pc_scene_is_solid(scene_of(given[0]), index_of(given[1], "structure"), &is_solid));
+    return mxCreateLogicalScalar(is_solid);
+}
+
+COMMAND(scene_set_solid) {
+    NEEDS(2, "a scene and a structure");
+    if (count > 2 && !mxIsLogicalScalar(given[2])) fail("bad_type", "give true or false");
+    check(pc_scene_set_solid(scene_of(given[0]), index_of(given[1], "structure"),
+                             count < 3 || mxIsLogicalScalarTrue(given[2])));
+    return NULL;
+}
+
+COMMAND(scene_set_pose) {
+    NEEDS(3, "a scene, a structure and a pose");
+    check(pc_scene_set_pose(scene_of(given[0]), index_of(given[1], "structure"),
+                            poses_of(given[2], 1, "pose")));
+    return NULL;
+}
+
+COMMAND(scene_set_vertices) {
+    rows_t vertices;
+    NEEDS(3, "a scene, a structure and vertices");
+    vertices = rows_of(given[2], 3, "vertices");
+    check(pc_scene_set_vertices(scene_of(given[0]), index_of(given[1], "structure"),
+                                vertices.data, vertices.rows));
+    return NULL;
+}
+
+/* The robots of a scene: a cell array with points, radii and a pose or [] in each row. Of N x 3 x B
+   points and 4 x 4 x B poses there are B sets of robots. */
 typedef struct {
     pc_scene *scene;
-    pc_chain **chains;
+    pc_chain **chains; /* one set after another */
     double *poses;
-    size_t many;
+    size_t many, sets;
 } cast_t;
 
 static void free_cast(cast_t *cast) {
     size_t k;
-    for (k = 0; k < cast->many; ++k) pc_chain_free(cast->chains[k]);
+    for (k = 0; k < cast->many * cast->sets; ++k) pc_chain_free(cast->chains[k]);
+}
+
+static void more_sets(cast_t *cast, size_t batch) {
+    if (batch == 1 || batch == cast->sets) return;
+    if (cast->sets != 1)
+        fail("bad_shape", "robots are N x 3, or N x 3 x B with the same B; so are poses");
+    cast->sets = batch;
 }
 
 static cast_t cast_of(int count, const mxArray *const *given) {
     cast_t cast;
     options_t options;
     robots_t *robots;
+    rows_t *poses;
+    uint32_t caps;
     pc_status status = PC_OK;
-    size_t columns, k;
+    size_t columns, k, set, axis;
     NEEDS(2, "a scene and robots");
-    cast.scene = (pc_scene *)handle_at(given[0], 0, SCENE);
+    cast.scene = scene_of(given[0]);
     options = options_of(count - 2, given + 2);
+    caps = caps_of(&options);
     columns = mxGetN(given[1]);
     if (!mxIsCell(given[1]) || (columns != 2 && columns != 3))
         fail("bad_shape", "`robots` must be a cell array with points and radii in each row");
     cast.many = mxGetM(given[1]);
-    cast.chains = (pc_chain **)mxCalloc(cast.many + 1, sizeof(pc_chain *));
-    cast.poses = (double *)mxCalloc(16 * cast.many + 1, sizeof(double));
+    cast.sets = 1;
     robots = (robots_t *)mxMalloc((cast.many + 1) * sizeof(robots_t));
+    poses = (rows_t *)mxCalloc(cast.many + 1, sizeof(rows_t));
     for (k = 0; k < cast.many; ++k) {
         const mxArray *pose = columns == 3 ? mxGetCell(given[1], k + 2 * cast.many) : NULL;
         const mxArray *points = mxGetCell(given[1], k), *radii = mxGetCell(given[1], k + cast.many);
-        size_t axis;
         if (points == NULL || radii == NULL)
             fail("bad_shape", "a robot of `robots` has no points or no radii");
         robots[k] = points_of(points, radii);
-        only_one(robots + k);
-        if (pose != NULL && !mxIsEmpty(pose))
-            memcpy(cast.poses + 16 * k, poses_of(pose, 1, "pose"), 16 * sizeof(double));
-        else
-            for (axis = 0; axis < 4; ++axis) cast.poses[16 * k + 5 * axis] = 1;
+        more_sets(&cast, robots[k].points.batch);
+        if (pose == NULL || mxIsEmpty(pose)) continue;
+        poses[k] = rows_of(pose, 4, "pose");
+        if (poses[k].rows != 4) fail("bad_shape", "`pose` must be 4 x 4, or 4 x 4 x B");
+        more_sets(&cast, poses[k].batch);
     }
-    caps_of(&options);
-    for (k = 0; k < cast.many && status == PC_OK; ++k)
-        status = pc_chain_new(robots[k].points.data, robots[k].points.rows, robots[k].radii,
-                              robots[k].radius_count, caps_of(&options), cast.chains + k);
+    cast.chains = (pc_chain **)mxCalloc(cast.many * cast.sets + 1, sizeof(pc_chain *));
+    cast.poses = (double *)mxCalloc(16 * cast.many * cast.sets + 1, sizeof(double));
+    for (set = 0; set < cast.sets; ++set)
+        for (k = 0; k < cast.many && status == PC_OK; ++k) {
+            const size_t place = set * cast.many + k;
+            const rows_t *points = &robots[k].points, *pose = poses + k;
+            const double *given_pose = pose->data + (pose->batch > 1 ? 16 * set : 0);
+            if (pose->data != NULL)
+                memcpy(cast.poses + 16 * place, given_pose, 16 * sizeof(double));
+            for (axis = 0; axis < 4 && pose->data == NULL; ++axis)
+                cast.poses[16 * place + 5 * axis] = 1;
+            status = pc_chain_new(
+                points->data + (points->batch > 1 ? 3 * set * points->rows : 0), points->rows,
+                robots[k].radii, robots[k].radius_count, caps, cast.chains + place);
+        }
     if (status != PC_OK) free_cast(&cast);
     check(status);
     return cast;
@@ -921,37 +1116,123 @@ static cast_t cast_of(int count, const mxArray *const *given) {
 
 COMMAND(scene_clears) {
     cast_t cast = cast_of(count, given);
-    bool found;
-    const pc_status status = pc_scene_clears(cast.scene, (const pc_chain *const *)cast.chains,
-                                             cast.poses, cast.many, &found);
+    mxArray *found = mxCreateLogicalMatrix(cast.sets, 1);
+    const pc_chain *const *chains = (const pc_chain *const *)cast.chains;
+    bool *clears = (bool *)mxGetLogicals(found);
+    const pc_status status =
+        cast.sets == 1 ? pc_scene_clears(cast.scene, chains, cast.poses, cast.many, clears)
+                       : pc_scene_clears_batch(cast.scene, chains, cast.poses, cast.many,
+                                               cast.sets, clears, NULL);
     free_cast(&cast);
     check(status);
-    return mxCreateLogicalScalar(found);
+    return found;
 }
 
 COMMAND(scene_tightest) {
     cast_t cast = cast_of(count, given);
-    pc_tightest found;
-    const pc_status status = pc_scene_tightest(cast.scene, (const pc_chain *const *)cast.chains,
-                                               cast.poses, cast.many, &found);
+    pc_tightest *found = (pc_tightest *)mxMalloc(cast.sets * sizeof(pc_tightest) + 1);
+    const pc_chain *const *chains = (const pc_chain *const *)cast.chains;
+    const pc_status status =
+        cast.sets == 1 ? pc_scene_tightest(cast.scene, chains, cast.poses, cast.many, found)
+                       : pc_scene_tightest_batch(cast.scene, chains, cast.poses, cast.many,
+                                                 cast.sets, found, NULL);
     free_cast(&cast);
     check(status);
-    return ONE(TIGHTEST, found);
+    return answers(TIGHTEST, found, sizeof *found, cast.sets);
 }
 
+COMMAND(scene_per_structure) {
+    cast_t cast = cast_of(count, given);
+    const pc_structure_proximity *found;
+    pc_status status;
+    size_t many;
+    if (cast.sets != 1) {
+        free_cast(&cast);
+        fail("bad_shape", "this question is about one set of robots; give N x 3 points");
+    }
+    status = pc_scene_per_structure(cast.scene, (const pc_chain *const *)cast.chains, cast.poses,
+                                    cast.many, &found, &many);
+    free_cast(&cast);
+    check(status);
+    return answers(STRUCTURE, found, sizeof *found, many);
+}
+
+/* Each row of `motions` is a set of robots. */
 COMMAND(scene_clears_motion) {
+    options_t options;
+    pc_scene *scene;
+    const pc_motion **motions, **sets;
+    size_t many, rows, columns, row, column;
+    pc_scene_motion_answer *found;
+    NEEDS(2, "a scene and an array of motions");
+    scene = scene_of(given[0]);
+    motions = motions_of(given[1], &many);
+    options = options_of(count - 2, given + 2);
+    needed(options.resolution, "resolution");
+    rows = mxGetM(given[1]);
+    columns = mxGetN(given[1]);
+    found = (pc_scene_motion_answer *)mxMalloc(rows * sizeof *found + 1);
+    if (rows == 1) {
+        check(pc_scene_clears_motion(scene, motions, many, options.resolution, found));
+    } else {
+        sets = (const pc_motion **)mxMalloc(many * sizeof(pc_motion *) + 1);
+        for (row = 0; row < rows; ++row)
+            for (column = 0; column < columns; ++column)
+                sets[row * columns + column] = motions[column * rows + row];
+        check(pc_scene_clears_motion_batch(scene, sets, columns, rows, options.resolution, found,
+                                           NULL));
+    }
+    return answers(SCENE_MOTION_ANSWER, found, sizeof *found, rows);
+}
+
+COMMAND(scene_time_of_contact) {
     options_t options;
     pc_scene *scene;
     const pc_motion **motions;
     size_t many;
     pc_scene_motion_answer found;
     NEEDS(2, "a scene and an array of motions");
-    scene = (pc_scene *)handle_at(given[0], 0, SCENE);
+    scene = scene_of(given[0]);
     motions = motions_of(given[1], &many);
     options = options_of(count - 2, given + 2);
-    check(pc_scene_clears_motion(scene, motions, many, needed(options.resolution, "resolution"),
-                                 &found));
-    return mxCreateDoubleScalar(found.decision);
+    check(pc_scene_time_of_contact(scene, motions, many,
+                                   needed(options.resolution, "resolution"), &found));
+    return ONE(SCENE_MOTION_ANSWER, found);
+}
+
+/* `ends` is a cell array with a structure, and its pose or vertices in each row. */
+COMMAND(scene_clears_motion_while) {
+    options_t options;
+    pc_scene *scene;
+    pc_structure_end *ends;
+    const pc_motion **motions;
+    size_t many, moving, k;
+    pc_scene_motion_answer found;
+    NEEDS(3, "a scene, where structures move to, and an array of motions");
+    scene = scene_of(given[0]);
+    if (!mxIsCell(given[1]) || mxGetN(given[1]) != 2)
+        fail("bad_shape", "`ends` must be a cell array with a structure, and its pose or vertices "
+                          "in each row");
+    moving = mxGetM(given[1]);
+    ends = (pc_structure_end *)mxCalloc(moving + 1, sizeof *ends);
+    for (k = 0; k < moving; ++k) {
+        const mxArray *structure = mxGetCell(given[1], k), *to = mxGetCell(given[1], k + moving);
+        if (structure == NULL || to == NULL)
+            fail("bad_shape", "a row of `ends` has no structure, or no pose and no vertices");
+        ends[k].structure = index_of(structure, "structure");
+        if (mxGetN(to) == 4) {
+            ends[k].pose = poses_of(to, 1, "pose");
+        } else {
+            const rows_t vertices = rows_of(to, 3, "vertices");
+            ends[k].vertices = vertices.data;
+            ends[k].vertex_count = vertices.rows;
+        }
+    }
+    motions = motions_of(given[2], &many);
+    options = options_of(count - 3, given + 3);
+    check(pc_scene_clears_motion_while(scene, ends, moving, motions, many,
+                                       needed(options.resolution, "resolution"), &found));
+    return ONE(SCENE_MOTION_ANSWER, found);
 }
 
 COMMAND(version) {
@@ -970,6 +1251,7 @@ static const struct {
                 {"minimum", minimum},
                 {"per_link", per_link},
                 {"clears", clears},
+                {"clears_sections", clears_sections},
                 {"contacts_within", contacts_within},
                 {"side", side},
                 {"clears_inside", clears_inside},
@@ -982,6 +1264,7 @@ static const struct {
                 {"moving_base", moving_base},
                 {"motion_path", motion_path},
                 {"clears_motion", clears_motion},
+                {"clears_motion_while", clears_motion_while},
                 {"time_of_contact", time_of_contact},
                 {"clearance_of_motion", clearance_of_motion},
                 {"pair_minimum", pair_minimum},
@@ -991,7 +1274,17 @@ static const struct {
                 {"scene_add", scene_add},
                 {"scene_clears", scene_clears},
                 {"scene_tightest", scene_tightest},
+                {"scene_per_structure", scene_per_structure},
                 {"scene_clears_motion", scene_clears_motion},
+                {"scene_clears_motion_while", scene_clears_motion_while},
+                {"scene_time_of_contact", scene_time_of_contact},
+                {"scene_set_margin", scene_set_margin},
+                {"scene_margin_between", scene_margin_between},
+                {"scene_set_margin_between", scene_set_margin_between},
+                {"scene_is_solid", scene_is_solid},
+                {"scene_set_solid", scene_set_solid},
+                {"scene_set_pose", scene_set_pose},
+                {"scene_set_vertices", scene_set_vertices},
                 {"prove", prove},
                 {"version", version}};
 

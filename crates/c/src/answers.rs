@@ -425,6 +425,21 @@ impl Answer for pc_robot_motion_answer {
     };
 }
 
+impl Answer for pc_tightest {
+    const NONE: Self = Self { slack: f64::NAN, place: pc_scene_place::NONE };
+}
+
+impl Answer for pc_scene_motion_answer {
+    const NONE: Self = Self {
+        decision: pc_decision::PC_UNDECIDED,
+        reason: pc_undecided_reason::PC_REASON_NONE,
+        interval: [f64::NAN; 2],
+        t: f64::NAN,
+        upper: f64::NAN,
+        place: pc_scene_place::NONE,
+    };
+}
+
 impl Answer for pc_scene_place {
     const NONE: Self = Self {
         on_first: NO_POINT,

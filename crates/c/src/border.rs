@@ -5,8 +5,10 @@
 //! an error. Any other pointer is trusted, as the header says.
 
 use crate::error::{Fault, pc_status};
+use crate::scene::pc_structure_end;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::pose_from_matrix;
+use parry_continuum::proximity::StructureEnd;
 use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
@@ -153,6 +155,16 @@ pub(crate) unsafe fn triangles<'a>(
     unsafe { items(pointer.cast(), name, count) }
 }
 
+/// `count` pairs of numbers.
+pub(crate) unsafe fn pairs<'a>(
+    pointer: *const usize,
+    name: &str,
+    count: usize,
+) -> Result<&'a [[usize; 2]], Fault> {
+    // SAFETY: an array has the layout of its items.
+    unsafe { items(pointer.cast(), name, count) }
+}
+
 fn pose_of(matrix: &[f64; 16]) -> Result<Pose, Fault> {
     let (rows, _) = matrix.as_chunks::<4>();
     Ok(pose_from_matrix([rows[0], rows[1], rows[2], rows[3]])?)
@@ -174,13 +186,69 @@ pub(crate) unsafe fn poses(
     name: &str,
     count: usize,
 ) -> Result<Vec<Pose>, Fault> {
+    // SAFETY: as for `batch_poses`.
+    let BatchPoses { poses, bad } = unsafe { batch_poses(pointer, name, count) }?;
+    match bad.into_iter().next() {
+        Some((robot, fault)) => Err(fault.of_robot(robot)),
+        None => Ok(poses),
+    }
+}
+
+/// The poses of a batch. A robot with a bad pose is asked at the identity, and then refused.
+pub(crate) struct BatchPoses {
+    pub poses: Vec<Pose>,
+    /// The robots with a bad pose, in order, and what is wrong.
+    pub bad: Vec<(usize, Fault)>,
+}
+
+/// `count` poses, good and bad ones; all the identity where the pointer is null.
+pub(crate) unsafe fn batch_poses(
+    pointer: *const f64,
+    name: &str,
+    count: usize,
+) -> Result<BatchPoses, Fault> {
     if pointer.is_null() {
-        return Ok(vec![Pose::IDENTITY; count]);
+        return Ok(BatchPoses { poses: vec![Pose::IDENTITY; count], bad: Vec::new() });
     }
     // SAFETY: 16 doubles each by the caller's promise.
     let matrices: &[[f64; 16]] = unsafe { items(pointer.cast(), name, count) }?;
-    let poses = matrices.iter().enumerate();
-    poses.map(|(k, matrix)| pose_of(matrix).map_err(|fault| fault.of_robot(k))).collect()
+    let mut bad = Vec::new();
+    let poses = matrices.iter().enumerate().map(|(robot, matrix)| {
+        pose_of(matrix).unwrap_or_else(|fault| {
+            bad.push((robot, fault));
+            Pose::IDENTITY
+        })
+    });
+    Ok(BatchPoses { poses: poses.collect(), bad })
+}
+
+/// Where `count` structures are at the end of a motion.
+pub(crate) unsafe fn structure_ends<'a>(
+    pointer: *const pc_structure_end,
+    name: &str,
+    count: usize,
+) -> Result<Vec<(usize, StructureEnd<'a>)>, Fault> {
+    // SAFETY: `count` structures by the caller's promise.
+    let given = unsafe { items(pointer, name, count) }?;
+    let of = |(k, end): (usize, &pc_structure_end)| {
+        let pc_structure_end { structure, .. } = *end;
+        let found = match (end.pose.is_null(), end.vertices.is_null() && end.vertex_count == 0) {
+            // SAFETY: a pose by the caller's promise.
+            (false, true) => unsafe { pose(end.pose, "pose") }.map(StructureEnd::Pose),
+            (true, false) => {
+                // SAFETY: as many vertices as it says, by the caller's promise.
+                let vertices = unsafe { points(end.vertices, "vertices", end.vertex_count) };
+                vertices.map(StructureEnd::Vertices)
+            }
+            _ => {
+                let text = "give either a `pose` or `vertices`";
+                Err(Fault::argument("bad_structure_end", text.into()))
+            }
+        };
+        let found = found.map_err(|fault| fault.within(&format!("`{name}[{k}]`")))?;
+        Ok((structure, found))
+    };
+    given.iter().enumerate().map(of).collect()
 }
 
 /// A list of handles that are only read.
@@ -274,13 +342,18 @@ pub(crate) unsafe fn new_handle<T>(
     Ok(NewHandle(place))
 }
 
-/// Where a list goes: its first item, and how many there are.
+/// Where the first item of a list goes.
 pub(crate) struct ListPlace<T>(Place<*const T>);
 
 impl<T> ListPlace<T> {
     /// Shows a list that the asked handle keeps.
-    pub(crate) fn set(&mut self, list: &[T], count: &mut Place<usize>) {
+    pub(crate) fn set(&mut self, list: &[T]) {
         self.0.set(list.as_ptr());
+    }
+
+    /// The same, and how many items it has.
+    pub(crate) fn set_counted(&mut self, list: &[T], count: &mut Place<usize>) {
+        self.set(list);
         count.set(list.len());
     }
 }

@@ -41,10 +41,23 @@ impl Fault {
         Self::new(pc_status::PC_BAD_ARGUMENT, kind, text)
     }
 
-    /// The same, about one robot or motion of a batch.
+    /// The same, about one robot or motion of a list.
     pub(crate) fn of_robot(self, robot: usize) -> Self {
-        let text = format!("robot {robot}: {}", self.text);
-        Self { text, robot: i64::try_from(robot).unwrap_or(i64::MAX), ..self }
+        self.of("robot", robot)
+    }
+
+    /// The same, about one item of a list.
+    pub(crate) fn of(self, item: &str, index: usize) -> Self {
+        self.within(&format!("{item} {index}")).about(index)
+    }
+
+    /// The same, about a part of an argument.
+    pub(crate) fn within(self, place: &str) -> Self {
+        Self { text: format!("{place}: {}", self.text), ..self }
+    }
+
+    fn about(self, index: usize) -> Self {
+        Self { robot: i64::try_from(index).unwrap_or(i64::MAX), ..self }
     }
 
     pub(crate) fn panic(panic: &(dyn Any + Send)) -> Self {
@@ -62,7 +75,9 @@ impl Fault {
         // A text has no NUL, except the name of a file from a program in another language.
         let text = CString::new(self.text.replace('\0', "?")).unwrap_or_default();
         let kind = CString::new(self.kind).unwrap_or_default();
-        LAST.with_borrow_mut(|last| *last = Some(Last { kind, text, robot: self.robot }));
+        let last = Some(Last { kind, text, robot: self.robot });
+        // A thread that ends has no place for it.
+        let _ = LAST.try_with(|place| place.replace(last));
         self.status
     }
 }
@@ -98,7 +113,17 @@ macro_rules! refused {
         }
     )*};
 }
-refused!(MatrixError, ProximityError, MeshError, SceneError);
+refused!(MatrixError, ProximityError, MeshError);
+
+impl From<SceneError> for Fault {
+    fn from(error: SceneError) -> Self {
+        let fault = Self::new(pc_status::PC_REFUSED, error.kind(), error.to_string());
+        match error {
+            SceneError::Robot { robot, .. } => fault.about(robot),
+            _ => fault,
+        }
+    }
+}
 
 impl From<MeshFileError> for Fault {
     fn from(error: MeshFileError) -> Self {
@@ -116,27 +141,27 @@ thread_local! {
     static LAST: RefCell<Option<Last>> = const { RefCell::new(None) };
 }
 
-/// A text of this thread's last error.
-fn text_of(of: fn(&Last) -> &CString) -> *const c_char {
-    LAST.with_borrow(|last| last.as_ref().map_or(c"".as_ptr(), |last| of(last).as_ptr()))
+/// What `of` says of this thread's last error. `None`: there is none.
+fn last<T>(of: impl FnOnce(&Last) -> T) -> Option<T> {
+    LAST.try_with(|last| last.borrow().as_ref().map(of)).ok().flatten()
 }
 
 /// Returns the message of this thread's last error, in UTF-8: what is wrong, and what to change. It
-/// is empty before the first error, and valid until the next one.
+/// is empty before the first error, and valid until the thread's next one or the thread's end.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_message() -> *const c_char {
-    text_of(|last| &last.text)
+    last(|last| last.text.as_ptr()).unwrap_or(c"".as_ptr())
 }
 
 /// Returns the kind of this thread's last error, such as "point_not_finite". Programs can compare
-/// it: it stays the same where a message becomes clearer.
+/// it: it stays the same where a message becomes clearer. It is valid as long as the message.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_kind() -> *const c_char {
-    text_of(|last| &last.kind)
+    last(|last| last.kind.as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// Returns which robot or motion of a batch this thread's last error is about, or -1.
+/// Returns which robot, motion or set of a list this thread's last error is about, or -1.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_robot() -> i64 {
-    LAST.with_borrow(|last| last.as_ref().map_or(-1, |last| last.robot))
+    last(|last| last.robot).unwrap_or(-1)
 }

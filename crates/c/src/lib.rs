@@ -25,6 +25,18 @@ pub use pair::*;
 pub use robot::*;
 pub use scene::*;
 
+/// What the header says about threads: handles move from one to another, and several may read one.
+const _: () = {
+    const fn is_sound<T: Send + Sync>() {}
+    is_sound::<pc_mesh>();
+    is_sound::<pc_chain>();
+    is_sound::<pc_tube>();
+    is_sound::<pc_motion>();
+    is_sound::<pc_pair>();
+    is_sound::<pc_self_query>();
+    is_sound::<pc_scene>();
+};
+
 /// The version of this interface. It grows whenever a program must be compiled again.
 pub const PC_ABI_VERSION: u32 = 1;
 

@@ -4,12 +4,12 @@ use crate::answers::{
     Answer, pc_clearance, pc_contact, pc_decision, pc_derivative, pc_inside_answer, pc_minimum,
     pc_motion_answer, pc_side, pc_surface,
 };
-use crate::border::Place;
+use crate::border::{BatchPoses, Place};
 use crate::error::{Fault, pc_status};
 use crate::motion::pc_motion;
 use crate::robot::{pc_chain, pc_tube};
 use mesh_files::{Frame, Options, load_with, to_obj};
-use parry_continuum::parry::math::Vector;
+use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
     BvhSearch, Contact, LinkProximity, Proof, Proximity, ProximityError, Side,
 };
@@ -32,6 +32,8 @@ pub struct pc_mesh {
     frame: Option<Frame>,
     links: Vec<LinkProximity>,
     minima: Vec<pc_minimum>,
+    batch: Vec<Result<Vec<LinkProximity>, ProximityError>>,
+    firsts: Vec<usize>,
     found: Vec<Contact>,
     contacts: Vec<pc_contact>,
     link_sides: Vec<Side>,
@@ -46,6 +48,8 @@ impl pc_mesh {
             frame,
             links: Vec::new(),
             minima: Vec::new(),
+            batch: Vec::new(),
+            firsts: Vec::new(),
             found: Vec::new(),
             contacts: Vec::new(),
             link_sides: Vec::new(),
@@ -60,26 +64,53 @@ pub(crate) fn fill<T, U>(list: &mut Vec<U>, of: &[T], convert: impl Fn(&T) -> U)
     list.extend(of.iter().map(convert));
 }
 
+/// Puts the robots of a batch at their poses.
+pub(crate) fn placed<'a, R>(
+    robots: impl IntoIterator<Item = &'a R>,
+    poses: &BatchPoses,
+) -> Vec<(&'a R, Pose)> {
+    robots.into_iter().zip(poses.poses.iter().copied()).collect()
+}
+
 /// Writes the answers of a batch. The first refused robot is the error; it and each other one have
-/// their own `statuses`, if those are wanted.
+/// their own `statuses`, if those are wanted. `bad`: robots that are refused in any case, in order.
 pub(crate) fn write_batch<T, A: Answer, E: Into<Fault>>(
     found: Vec<Result<T, E>>,
+    bad: Vec<(usize, Fault)>,
     answers: &mut Place<A>,
     statuses: &mut Option<Place<pc_status>>,
     convert: impl Fn(&T) -> A,
 ) -> Result<(), Fault> {
-    let mut first = None;
-    for (robot, found) in found.into_iter().enumerate() {
-        let (answer, fault) = match found {
-            Ok(found) => (convert(&found), None),
-            Err(error) => (A::NONE, Some(error.into())),
+    let found = found.into_iter().map(|found| found.map(|found| convert(&found)));
+    write_each("robot", found, bad, statuses, |robot, found| {
+        answers.set_at(robot, found.unwrap_or(A::NONE));
+    })
+}
+
+/// The same, with answers of any kind, about robots or other items.
+pub(crate) fn write_each<T, E: Into<Fault>>(
+    item: &str,
+    found: impl Iterator<Item = Result<T, E>>,
+    bad: Vec<(usize, Fault)>,
+    statuses: &mut Option<Place<pc_status>>,
+    mut write: impl FnMut(usize, Option<T>),
+) -> Result<(), Fault> {
+    let (mut first, mut bad) = (None, bad.into_iter().peekable());
+    for (index, found) in found.enumerate() {
+        let found = match bad.next_if(|(bad, _)| *bad == index) {
+            Some((_, fault)) => Err(fault),
+            None => found.map_err(Into::into),
         };
-        answers.set_at(robot, answer);
         if let Some(statuses) = statuses {
-            statuses.set_at(robot, fault.as_ref().map_or(pc_status::PC_OK, |it| it.status));
+            let status = found.as_ref().map_or_else(|fault| fault.status, |_| pc_status::PC_OK);
+            statuses.set_at(index, status);
         }
-        if let (None, Some(fault)) = (&first, fault) {
-            first = Some(fault.of_robot(robot));
+        match found {
+            Ok(found) => write(index, Some(found)),
+            Err(fault) => {
+                write(index, None);
+                first.get_or_insert_with(|| fault.of(item, index));
+            }
         }
     }
     first.map_or(Ok(()), Err)
@@ -239,13 +270,13 @@ pub unsafe extern "C" fn pc_mesh_minimum_batch(
     minima: *mut pc_minimum,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, robots: handles(count), poses: poses(count), minima: places(count),
+    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count), minima: places(count),
         statuses: places_or_none(count) =>
     {
-        let robots: Vec<_> = robots.iter().map(|robot| &robot.chain).zip(poses).collect();
+        let robots = placed(robots.iter().map(|robot| &robot.chain), &poses);
         let mut found = Vec::new();
         mesh.search.minimum_batch(&robots, &mut found)?;
-        write_batch(found, &mut minima, &mut statuses, |found| found.into())
+        write_batch(found, poses.bad, &mut minima, &mut statuses, |found| found.into())
     })
 }
 
@@ -261,8 +292,40 @@ pub unsafe extern "C" fn pc_mesh_per_link(
     border!(mesh: exclusive, robot: shared, pose: pose, links: list, count: place => {
         mesh.search.per_link(&robot.chain, &pose, &mut mesh.links)?;
         fill(&mut mesh.minima, &mesh.links, |found| found.into());
-        links.set(&mesh.minima, &mut count);
+        links.set_counted(&mesh.minima, &mut count);
         Ok(())
+    })
+}
+
+/// Finds where each link of each of `count` robots is closest, on all cores. The links of robot `k`
+/// are `links[firsts[k]]` to `links[firsts[k + 1] - 1]`; a refused robot has none. `firsts` has
+/// `count + 1` items. Both lists belong to the mesh.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_mesh_per_link_batch(
+    mesh: *mut pc_mesh,
+    robots: *const *const pc_chain,
+    poses: *const f64,
+    count: usize,
+    links: *mut *const pc_minimum,
+    firsts: *mut *const usize,
+    statuses: *mut pc_status,
+) -> pc_status {
+    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count), links: list,
+        firsts: list, statuses: places_or_none(count) =>
+    {
+        let robots = placed(robots.iter().map(|robot| &robot.chain), &poses);
+        mesh.search.per_link_batch(&robots, &mut mesh.batch)?;
+        mesh.minima.clear();
+        mesh.firsts.clear();
+        mesh.firsts.push(0);
+        let found = mesh.batch.iter().map(|found| found.as_ref().map_err(|error| *error));
+        let written = write_each("robot", found, poses.bad, &mut statuses, |_, found| {
+            mesh.minima.extend(found.into_iter().flatten().map(pc_minimum::from));
+            mesh.firsts.push(mesh.minima.len());
+        });
+        links.set(&mesh.minima);
+        firsts.set(&mesh.firsts);
+        written
     })
 }
 
@@ -292,13 +355,46 @@ pub unsafe extern "C" fn pc_mesh_clears_batch(
     clears: *mut bool,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, robots: handles(count), poses: poses(count), clears: places(count),
+    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count), clears: places(count),
         statuses: places_or_none(count) =>
     {
-        let robots: Vec<_> = robots.iter().map(|robot| &robot.chain).zip(poses).collect();
+        let robots = placed(robots.iter().map(|robot| &robot.chain), &poses);
         let mut found = Vec::new();
         mesh.search.clears_batch(&robots, margin, &mut found)?;
-        write_batch(found, &mut clears, &mut statuses, |clears| *clears)
+        write_batch(found, poses.bad, &mut clears, &mut statuses, |clears| *clears)
+    })
+}
+
+/// The same for `count` robots of `section_count` sections of constant curvature each, on all cores.
+/// A section is three numbers: its length, and its curvature towards x and towards y. All robots have
+/// the same radii: one for each section, or a single one. A section becomes `segments` straight
+/// links. All bases have the same `pose`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_mesh_clears_sections_batch(
+    mesh: *mut pc_mesh,
+    sections: *const f64,
+    section_count: usize,
+    radii: *const f64,
+    radius_count: usize,
+    count: usize,
+    segments: usize,
+    pose: *const f64,
+    margin: f64,
+    clears: *mut bool,
+    statuses: *mut pc_status,
+) -> pc_status {
+    border!(mesh: exclusive, sections: points(section_count.saturating_mul(count)),
+        radii: items(radius_count), pose: pose, clears: places(count),
+        statuses: places_or_none(count) =>
+    {
+        let mut memory = Vec::new();
+        let each = crate::robot::radii(radii, section_count, &mut memory);
+        let sections = crate::motion::sections(sections, each, section_count)?;
+        let robot = |k: usize| &sections[k * section_count..][..section_count];
+        let robots: Vec<_> = (0..count).map(robot).collect();
+        let mut found = Vec::new();
+        mesh.search.clears_sections_batch(&robots, segments, &pose, margin, &mut found)?;
+        write_batch(found, Vec::new(), &mut clears, &mut statuses, |clears| *clears)
     })
 }
 
@@ -318,7 +414,7 @@ pub unsafe extern "C" fn pc_mesh_contacts_within(
         let found = &mut mesh.found;
         mesh.search.contacts_within(&robot.chain, &pose, margin, prominence, found)?;
         fill(&mut mesh.contacts, &mesh.found, |found| found.into());
-        contacts.set(&mesh.contacts, &mut count);
+        contacts.set_counted(&mesh.contacts, &mut count);
         Ok(())
     })
 }
@@ -380,7 +476,7 @@ pub unsafe extern "C" fn pc_mesh_link_sides(
     border!(mesh: exclusive, robot: shared, pose: pose, sides: list, count: place => {
         mesh.search.link_sides(&robot.chain, &pose, &mut mesh.link_sides)?;
         fill(&mut mesh.sides, &mesh.link_sides, |side| (*side).into());
-        sides.set(&mesh.sides, &mut count);
+        sides.set_counted(&mesh.sides, &mut count);
         Ok(())
     })
 }
@@ -426,13 +522,13 @@ pub unsafe extern "C" fn pc_mesh_clearance_batch(
     clearances: *mut pc_clearance,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, tubes: handles(count), poses: poses(count),
+    border!(mesh: exclusive, tubes: handles(count), poses: batch_poses(count),
         clearances: places(count), statuses: places_or_none(count) =>
     {
-        let tubes: Vec<_> = tubes.iter().map(|tube| &tube.tube).zip(poses).collect();
+        let tubes = placed(tubes.iter().map(|tube| &tube.tube), &poses);
         let mut found = Vec::new();
         mesh.search.clearance_batch(&tubes, tolerance, &mut found)?;
-        write_batch(found, &mut clearances, &mut statuses, |found| found.into())
+        write_batch(found, poses.bad, &mut clearances, &mut statuses, |found| found.into())
     })
 }
 
@@ -465,13 +561,13 @@ pub unsafe extern "C" fn pc_mesh_clears_tube_batch(
     decisions: *mut pc_decision,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, tubes: handles(count), poses: poses(count), decisions: places(count),
+    border!(mesh: exclusive, tubes: handles(count), poses: batch_poses(count), decisions: places(count),
         statuses: places_or_none(count) =>
     {
-        let tubes: Vec<_> = tubes.iter().map(|tube| &tube.tube).zip(poses).collect();
+        let tubes = placed(tubes.iter().map(|tube| &tube.tube), &poses);
         let mut found = Vec::new();
         mesh.search.clears_tube_batch(&tubes, margin, resolution, &mut found)?;
-        write_batch(found, &mut decisions, &mut statuses, |decision| (*decision).into())
+        write_batch(found, poses.bad, &mut decisions, &mut statuses, |decision| (*decision).into())
     })
 }
 
@@ -508,7 +604,7 @@ pub unsafe extern "C" fn pc_mesh_clears_motion_batch(
         let motions: Vec<_> = motions.iter().map(|motion| motion.motion()).collect();
         let mut found = Vec::new();
         mesh.search.clears_motion_batch(&motions, margin, resolution, &mut found)?;
-        write_batch(found, &mut answers, &mut statuses, |found| found.into())
+        write_batch(found, Vec::new(), &mut answers, &mut statuses, |found| found.into())
     })
 }
 
@@ -587,9 +683,14 @@ fn write_proof(
     path: &str,
     prove: impl FnOnce(&mut BvhSearch) -> Result<Option<Proof>, ProximityError>,
 ) -> Result<bool, Fault> {
+    let path = Path::new(path);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
+        let text =
+            format!("`path` is {}, the file of the mesh; give another extension", path.display());
+        return Err(Fault::argument("bad_path", text));
+    }
     let Some(proof) = prove(&mut mesh.search)? else { return Ok(false) };
     let obj = to_obj(mesh.search.vertices(), mesh.search.triangles());
-    let path = Path::new(path);
     for (path, text) in [(path, proof.to_string()), (&path.with_extension("obj"), obj)] {
         fs::write(path, text).map_err(|error| {
             let text = format!("{} cannot be written: {error}", path.display());

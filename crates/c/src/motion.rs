@@ -2,7 +2,7 @@
 
 use crate::error::{Fault, pc_status};
 use crate::robot::{Caps, pc_chain, pc_tube, radii};
-use parry_continuum::parry::math::Pose;
+use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::{
     BendingMotion, BendingSection, CommonFrame, DisplacementBound, LinearMotion, Motion,
     MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube, verify_motion,
@@ -139,6 +139,24 @@ pub unsafe extern "C" fn pc_motion_rigid_tube(
     })
 }
 
+/// Robots of `count` sections each, one after another, with the same radii.
+pub(crate) fn sections(
+    numbers: &[Vector],
+    radii: &[f64],
+    count: usize,
+) -> Result<Vec<BendingSection>, Fault> {
+    if radii.len() != count {
+        let text = format!("`radii` has {} numbers; give 1 or {count}", radii.len());
+        return Err(Fault::argument("bad_length", text));
+    }
+    let section = |(numbers, &radius): (&Vector, &f64)| BendingSection {
+        length: numbers.x,
+        bend: [numbers.y, numbers.z],
+        radius,
+    };
+    Ok(numbers.iter().zip(radii.iter().cycle()).map(section).collect())
+}
+
 /// Makes the motion of sections of constant curvature, whose lengths and curvatures change evenly.
 /// A section is three numbers: its length, and its curvature towards x and towards y. `pose` is
 /// that of the base.
@@ -157,17 +175,8 @@ pub unsafe extern "C" fn pc_motion_bending(
     {
         let mut memory = Vec::new();
         let each = self::radii(radii, start.len(), &mut memory);
-        if each.len() != start.len() {
-            let text = format!("`radii` has {} numbers; give 1 or {}", each.len(), start.len());
-            return Err(Fault::argument("bad_length", text));
-        }
-        let [start, end] = [start, end].map(|sections| {
-            let sections = sections.iter().zip(each);
-            let section = |(numbers, &radius): (&parry_continuum::parry::math::Vector, &f64)| {
-                BendingSection { length: numbers.x, bend: [numbers.y, numbers.z], radius }
-            };
-            sections.map(section).collect::<Vec<_>>()
-        });
+        let count = start.len();
+        let [start, end] = [sections(start, each, count)?, sections(end, each, count)?];
         motion.set(pc_motion::new(BendingMotion::new(&start, &end, pose)?));
         Ok(())
     })

@@ -3,10 +3,13 @@
 use crate::answers::{
     Answer, pc_decision, pc_robot_clearance, pc_robot_motion_answer, pc_robot_proximity,
 };
-use crate::error::pc_status;
-use crate::mesh::{fill, write_batch};
+use crate::border::BatchPoses;
+use crate::error::{Fault, pc_status};
+use crate::mesh::{fill, placed, write_batch};
 use crate::motion::pc_motion;
 use crate::robot::{pc_chain, pc_tube};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{RobotPair, RobotProximity, SelfQuery};
 
 /// Questions about two robots. It remembers its last answers, as a mesh does.
@@ -58,6 +61,22 @@ pub unsafe extern "C" fn pc_pair_minimum(
     })
 }
 
+/// Robots, and where they are.
+type Placed<'a> = (&'a Chain, Pose);
+
+/// The pairs of a batch, and the refused ones, in order.
+fn pairs<'a>(
+    a: (Vec<&'a pc_chain>, BatchPoses),
+    b: (Vec<&'a pc_chain>, BatchPoses),
+) -> (Vec<[Placed<'a>; 2]>, Vec<(usize, Fault)>) {
+    let [a_placed, b_placed] =
+        [&a, &b].map(|(robots, poses)| placed(robots.iter().map(|robot| &robot.chain), poses));
+    let mut bad: Vec<_> = a.1.bad.into_iter().chain(b.1.bad).collect();
+    bad.sort_by_key(|(pair, _)| *pair);
+    bad.dedup_by_key(|(pair, _)| *pair);
+    (a_placed.into_iter().zip(b_placed).map(|(a, b)| [a, b]).collect(), bad)
+}
+
 /// Finds where each of `count` pairs of robots are closest, on all cores, as
 /// `pc_mesh_minimum_batch`.
 #[unsafe(no_mangle)]
@@ -71,17 +90,61 @@ pub unsafe extern "C" fn pc_pair_minimum_batch(
     minima: *mut pc_robot_proximity,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(pair: shared, robots_a: handles(count), poses_a: poses(count),
-        robots_b: handles(count), poses_b: poses(count), minima: places(count),
+    border!(pair: shared, robots_a: handles(count), poses_a: batch_poses(count),
+        robots_b: handles(count), poses_b: batch_poses(count), minima: places(count),
         statuses: places_or_none(count) =>
     {
-        let [a, b] = [(robots_a, poses_a), (robots_b, poses_b)].map(|(robots, poses)| {
-            robots.into_iter().map(|robot| &robot.chain).zip(poses)
-        });
-        let pairs: Vec<_> = a.zip(b).map(|(a, b)| [a, b]).collect();
+        let (pairs, bad) = pairs((robots_a, poses_a), (robots_b, poses_b));
         let mut found = Vec::new();
         pair.pair.minimum_batch(&pairs, &mut found);
-        write_batch(found, &mut minima, &mut statuses, |found| found.into())
+        write_batch(found, bad, &mut minima, &mut statuses, |found| found.into())
+    })
+}
+
+/// Says whether each of `count` pairs of robots keep more than the margin apart, on all cores, as
+/// `pc_mesh_minimum_batch`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_pair_clears_batch(
+    pair: *const pc_pair,
+    robots_a: *const *const pc_chain,
+    poses_a: *const f64,
+    robots_b: *const *const pc_chain,
+    poses_b: *const f64,
+    count: usize,
+    margin: f64,
+    clears: *mut bool,
+    statuses: *mut pc_status,
+) -> pc_status {
+    border!(pair: shared, robots_a: handles(count), poses_a: batch_poses(count),
+        robots_b: handles(count), poses_b: batch_poses(count), clears: places(count),
+        statuses: places_or_none(count) =>
+    {
+        let (pairs, bad) = pairs((robots_a, poses_a), (robots_b, poses_b));
+        let mut found = Vec::new();
+        pair.pair.clears_batch(&pairs, margin, &mut found)?;
+        write_batch(found, bad, &mut clears, &mut statuses, |clears| *clears)
+    })
+}
+
+/// The same for pairs of motions, at every time from 0 to 1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_pair_clears_motions_batch(
+    pair: *const pc_pair,
+    motions_a: *const *const pc_motion,
+    motions_b: *const *const pc_motion,
+    count: usize,
+    margin: f64,
+    resolution: f64,
+    answers: *mut pc_robot_motion_answer,
+    statuses: *mut pc_status,
+) -> pc_status {
+    border!(pair: shared, motions_a: handles(count), motions_b: handles(count),
+        answers: places(count), statuses: places_or_none(count) =>
+    {
+        let pairs = motions_a.iter().zip(&motions_b).map(|(a, b)| (a.motion(), b.motion()));
+        let (pairs, mut found): (Vec<_>, _) = (pairs.collect(), Vec::new());
+        pair.pair.clears_motions_batch(&pairs, margin, resolution, &mut found)?;
+        write_batch(found, Vec::new(), &mut answers, &mut statuses, |found| found.into())
     })
 }
 
@@ -101,7 +164,7 @@ pub unsafe extern "C" fn pc_pair_per_link(
     {
         let (a, b) = (&robot_a.chain, &robot_b.chain);
         pair.pair.per_link(a, &pose_a, b, &pose_b, &mut pair.found)?;
-        links.set(pair.list(), &mut count);
+        links.set_counted(pair.list(), &mut count);
         Ok(())
     })
 }
@@ -123,7 +186,7 @@ pub unsafe extern "C" fn pc_pair_contacts_within(
     {
         let (a, b) = (&robot_a.chain, &robot_b.chain);
         pair.pair.contacts_within(a, &pose_a, b, &pose_b, margin, &mut pair.found)?;
-        contacts.set(pair.list(), &mut count);
+        contacts.set_counted(pair.list(), &mut count);
         Ok(())
     })
 }

@@ -53,6 +53,14 @@ void put_motion(const MotionAnswer& found) {
     put_place(found);
 }
 
+void put_scene_motion(const SceneMotionAnswer& found) {
+    put(found.decision);
+    put(found.reason);
+    put_all(found.interval, 2);
+    put(found.t);
+    put(found.upper);
+}
+
 // Writes an answer, or NaN if it is refused.
 template <class Ask>
 void answer(Ask ask) {
@@ -67,7 +75,7 @@ void answer(Ask ask) {
 
 void ask_everything(Mesh& mesh, RobotPair& pair, SelfQuery& alone, const Chain& robot,
                     const Pose& pose, Caps caps, Points start, Points end, const Radii& radii,
-                    double margin) {
+                    double margin, Points vertices) {
     answer([&] {
         const auto links = mesh.per_link(robot, pose);
         put(static_cast<double>(links.size()));
@@ -114,6 +122,39 @@ void ask_everything(Mesh& mesh, RobotPair& pair, SelfQuery& alone, const Chain& 
         put(tightest.slack);
         put(index_of(tightest.place.structure));
     });
+    scene.set_margin_between(0, 1, 0.5);
+    put(scene.margin_between(0, 0));
+    put(scene.margin_between(0, 1));
+    answer([&] {
+        scene.set_solid(0);
+        put(1);
+    });
+    put(scene.is_solid(0));
+    const std::vector<const Chain*> sets{&robot, &other, &other, &robot};
+    const std::vector<Pose> set_poses{pose, Pose(), Pose(), pose};
+    const auto clears = scene.clears_batch(sets, 2, set_poses);
+    for (int k = 0; k < 2; ++k) put(clears.statuses[k] == PC_OK ? clears.answers[k] : NAN);
+    const auto slacks = scene.tightest_batch(sets, 2, set_poses);
+    for (int k = 0; k < 2; ++k) put(slacks.answers[k].slack);
+    scene.set_margin_between(0, 1, none);
+    answer([&] { put(scene.clears({&robot, &other}, {pose, Pose()})); });
+    scene.set_robot_margin(none);
+    answer([&] {
+        const Motion motion = Motion::linear(start, end, radii);
+        answer([&] {
+            put_scene_motion(
+                scene.clears_motion_while({StructureEnd::pose(0, pose)}, {&motion}, fine));
+        });
+        std::vector<double> grown(vertices.data(), vertices.data() + 3 * vertices.size());
+        for (double& number : grown) number *= 1.25;
+        answer([&] {
+            put_scene_motion(
+                scene.clears_motion_while({StructureEnd::vertices(0, grown)}, {&motion}, fine));
+        });
+        const auto twice = scene.clears_motion_batch({&motion, &motion}, 1, fine);
+        for (int k = 0; k < 2; ++k)
+            twice.statuses[k] == PC_OK ? put_scene_motion(twice.answers[k]) : put(NAN);
+    });
 }
 
 }  // namespace
@@ -122,9 +163,11 @@ int main(int argc, char** argv) {
     if (argc != 3 || pc_abi_version() != PC_ABI_VERSION) return 2;
     read_numbers(argv[1]);
     std::vector<Mesh> meshes;
+    std::vector<Points> vertices;
     for (std::size_t left = count(); left > 0; --left) {
-        const std::size_t vertices = count();
-        const Points points(take(3 * vertices), vertices);
+        const std::size_t vertex_count = count();
+        const Points points(take(3 * vertex_count), vertex_count);
+        vertices.push_back(points);
         std::vector<std::array<std::uint32_t, 3>> faces(count());
         for (auto& face : faces)
             for (auto& corner : face) corner = static_cast<std::uint32_t>(number());
@@ -135,7 +178,8 @@ int main(int argc, char** argv) {
     std::vector<Chain> robots;
     std::vector<Pose> poses;
     for (std::size_t left = count(); left > 0; --left) {
-        Mesh& mesh = meshes[count()];
+        const std::size_t place = count();
+        Mesh& mesh = meshes[place];
         const Caps caps = static_cast<Caps>(count());
         const double margin = number();
         const bool everything = number() != 0;
@@ -150,7 +194,8 @@ int main(int argc, char** argv) {
             answer([&] { put_minimum(mesh.minimum(robot, pose)); });
             answer([&] { put(mesh.clears(robot, margin, pose)); });
             if (everything)
-                ask_everything(mesh, pair, alone, robot, pose, caps, start, end, radii, margin);
+                ask_everything(mesh, pair, alone, robot, pose, caps, start, end, radii, margin,
+                               vertices[place]);
             if (&mesh == &meshes.back()) {
                 robots.push_back(std::move(robot));
                 poses.push_back(pose);
@@ -162,5 +207,25 @@ int main(int argc, char** argv) {
     const auto batch = meshes.back().minimum_batch(all, poses);
     for (std::size_t k = 0; k < all.size(); ++k)
         batch.statuses[k] == PC_OK ? put_minimum(batch.answers[k]) : put(NAN);
+    const auto links = meshes.back().per_link_batch(all, poses);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (links.statuses[k] != PC_OK) put(NAN);
+        for (const Minimum& link : links.links[k]) put_minimum(link);
+    }
+    const std::vector<const Chain*> shifted(all.begin(), all.end() - 1);
+    const auto apart = pair.clears_batch(shifted, shifted, 0.5, {poses.begin(), poses.end() - 1},
+                                         {poses.begin() + 1, poses.end()});
+    for (std::size_t k = 0; k < apart.answers.size(); ++k)
+        put(apart.statuses[k] == PC_OK ? apart.answers[k] : NAN);
+    std::vector<double> sections;
+    for (int k = 0; k < 1000; ++k)
+        for (const double number :
+             {k % 97 == 96 ? NAN : 2 + 0.5 * (k % 10), 0.0625 * (k % 7), -0.03125 * (k % 5), 2.0,
+              0.5 - 0.125 * (k % 11), 0.25 * (k % 3)})
+            sections.push_back(number);
+    const auto bent = meshes.back().clears_sections_batch(
+        sections, 2, std::vector<double>{0.3, 0.2}, 5, 0.1);
+    for (std::size_t k = 0; k < bent.answers.size(); ++k)
+        put(bent.statuses[k] == PC_OK ? bent.answers[k] : NAN);
     write_numbers(argv[2]);
 }

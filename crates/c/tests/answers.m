@@ -31,11 +31,12 @@ function answers(cases, found)
     end
 
     meshes = zeros(1, take(1), 'uint64');
+    vertices = cell(1, numel(meshes));
     for k = 1:numel(meshes)
-        vertices = rows(take(1));
-        meshes(k) = continuum.mesh(vertices, rows(take(1)) + 1);
+        vertices{k} = rows(take(1));
+        meshes(k) = continuum.mesh(vertices{k}, rows(take(1)) + 1);
     end
-    last = cell(0, 3);
+    last = cell(0, 2);
     for k = 1:take(1)
         place = take(1) + 1;
         caps = {'fitted', 'capsules', 'cylinders'}{take(1) + 1};
@@ -57,7 +58,7 @@ function answers(cases, found)
         put(found_minimum);
         answer(@() continuum.clears(mesh, robot{:}, 'margin', margin));
         if place == numel(meshes)
-            last(end + 1, :) = {found_minimum, 0, 0};
+            last(end + 1, :) = {found_minimum, robot};
         end
         if ~everything
             continue
@@ -85,11 +86,61 @@ function answers(cases, found)
         continuum.scene_add(scene, 'wall', mesh, 'margin', margin);
         both = {from, radii, pose; to, radii, []};
         answer(@() tightest_row(continuum.scene_tightest(scene, both, 'caps', caps)));
+        continuum.scene_set_margin_between(scene, 1, 2, 0.5);
+        put([continuum.scene_margin_between(scene, 1, 1), ...
+             continuum.scene_margin_between(scene, 1, 2)]);
+        answer(@() made_solid(scene));
+        put(continuum.scene_is_solid(scene, 1));
+        sets = {cat(3, from, to), radii, cat(3, pose, eye(4))
+                cat(3, to, from), radii, cat(3, eye(4), pose)};
+        answer(@() continuum.scene_clears(scene, sets, 'caps', caps));
+        answer(@() slack_rows(continuum.scene_tightest(scene, sets, 'caps', caps)));
+        continuum.scene_set_margin_between(scene, 1, 2, []);
+        answer(@() continuum.scene_clears(scene, both, 'caps', caps));
+        continuum.free(scene);
+        scene = continuum.scene();
+        continuum.scene_add(scene, 'wall', mesh, 'margin', margin);
+        continuum.scene_set_margin_between(scene, 1, 2, []);
+        try
+            continuum.scene_set_solid(scene, 1);
+        catch
+        end
+        motion = continuum.linear_motion(from, to, radii);
+        moved = {1, pose};
+        answer(@() scene_motion_rows(continuum.scene_clears_motion_while(scene, moved, motion, ...
+                                                                         'resolution', fine)));
+        moved = {1, vertices{place} * 1.25};
+        answer(@() scene_motion_rows(continuum.scene_clears_motion_while(scene, moved, motion, ...
+                                                                         'resolution', fine)));
+        answer(@() scene_motion_rows(continuum.scene_clears_motion(scene, [motion; motion], ...
+                                                                   'resolution', fine)));
+        continuum.free(motion);
         continuum.free(scene);
     end
     for k = 1:rows_of(last)
         put(last{k, 1});
     end
+    links = cellfun(@(robot) continuum.per_link(meshes(end), robot{:}), last(:, 2), ...
+                    'UniformOutput', false);
+    for k = 1:numel(links)
+        each = minimum_row(links{k})';
+        put(each);
+    end
+    for k = 1:rows_of(last) - 1
+        [one, next] = last{k:k + 1, 2}; % points, radii, 'pose', pose, 'caps', caps
+        put(continuum.pair_clears(one{1:2}, one{1:2}, 'pose_a', one{4}, 'pose_b', next{4}, ...
+                                  one{5:6}, 'margin', 0.5));
+    end
+    sections = zeros(2, 3, 1000);
+    for k = 0:999
+        sections(:, :, k + 1) = [2 + 0.5 * mod(k, 10), 0.0625 * mod(k, 7), -0.03125 * mod(k, 5)
+                                 2, 0.5 - 0.125 * mod(k, 11), 0.25 * mod(k, 3)];
+    end
+    keeps = mod(0:999, 97)' ~= 96;
+    clear_ones = NaN(1000, 1);
+    clear_ones(keeps) = continuum.clears_sections(meshes(end), sections(:, :, keeps), ...
+                                                  [0.3 0.2], 'segments', 5, 'margin', 0.1);
+    put(clear_ones);
     file = fopen(found, 'wb');
     fwrite(file, vertcat(out{1:used}), 'double', 0, 'ieee-le');
     fclose(file);
@@ -137,6 +188,19 @@ end
 
 function values = proximity_row(found)
     values = [found.distance, found.on_first, found.on_second, found.arc_lengths];
+end
+
+function value = made_solid(scene)
+    continuum.scene_set_solid(scene, 1);
+    value = 1;
+end
+
+function values = slack_rows(found)
+    values = found.slack;
+end
+
+function values = scene_motion_rows(found)
+    values = [double(found.decision), found.reason, found.interval, found.t, found.upper]';
 end
 
 function values = tightest_row(found)

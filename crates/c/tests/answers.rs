@@ -8,9 +8,10 @@ use continuum_testing::{Case as Distance, Random, distance_cases, read_lines};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
     Between, BvhSearch, Clearance, Contact, Decision, LinkProximity, MotionAnswer, MotionClearance,
-    Proximity, RobotPair, Scene, SelfQuery, Side, UndecidedReason, Witness,
+    Proximity, RobotPair, Scene, SceneMotionAnswer, SelfQuery, Side, StructureEnd, UndecidedReason,
+    Witness,
 };
-use parry_continuum::{Chain, LinearMotion, RobotError, Tube, pose_from_matrix};
+use parry_continuum::{BendingSection, Chain, LinearMotion, RobotError, Tube, pose_from_matrix};
 use serde_json::Value;
 use std::error::Error;
 use std::{env, fs};
@@ -302,13 +303,24 @@ impl Answers {
         self.truth(found.resolved);
     }
 
-    fn motion(&mut self, found: &MotionAnswer) {
-        self.decision(found.decision);
-        self.0.push(match found.reason {
+    fn reason(&mut self, reason: Option<UndecidedReason>) {
+        self.0.push(match reason {
             None => 0.0,
             Some(UndecidedReason::Work) => 2.0,
             Some(_) => 1.0,
         });
+    }
+
+    fn scene_motion(&mut self, found: &SceneMotionAnswer) {
+        self.decision(found.decision);
+        self.reason(found.reason);
+        self.numbers(found.interval);
+        self.numbers(found.contact.as_ref().map_or([f64::NAN; 2], |it| [it.t(), it.upper()]));
+    }
+
+    fn motion(&mut self, found: &MotionAnswer) {
+        self.decision(found.decision);
+        self.reason(found.reason);
         self.numbers(found.interval);
         match &found.contact {
             Some(shape) => {
@@ -414,6 +426,42 @@ fn answer(input: &str, output: &str) -> Fallible<()> {
                     out.numbers([found.slack, structure]);
                 }
             });
+            scene.set_margin_between(0, 1, Some(0.5))?;
+            out.numbers([0, 1].map(|k| scene.margin_between(0, k).unwrap_or(f64::NAN)));
+            out.add(scene.set_solid(0, true), |out, ()| out.0.push(1.0));
+            out.truth(scene.is_solid(0));
+            let sets = [[robots[0], robots[1]], [robots[1], robots[0]]];
+            let sets = sets.each_ref().map(|set| set.as_slice());
+            let mut found = Vec::new();
+            scene.clears_batch(&sets, &mut found);
+            for found in found {
+                out.add(found, |out, clears| out.truth(clears));
+            }
+            let mut found = Vec::new();
+            scene.tightest_batch(&sets, &mut found);
+            for found in found {
+                out.add(found, |out, found| {
+                    out.0.push(found.map_or(f64::INFINITY, |found| found.slack));
+                });
+            }
+            scene.set_margin_between(0, 1, None)?;
+            out.add(scene.clears(&robots), |out, clears| out.truth(clears));
+            scene.set_robot_margin(None)?;
+            let motion = LinearMotion::chain(&case.start, &case.end, &case.radii);
+            out.add(motion, |out, motion| {
+                let moved = [(0, StructureEnd::Pose(pose))];
+                let found = scene.clears_motion_while(&moved, &[&motion], FINE);
+                out.add(found, |out, found| out.scene_motion(&found));
+                let vertices: Vec<_> = search.vertices().iter().map(|it| it * 1.25).collect();
+                let grown = [(0, StructureEnd::Vertices(&vertices))];
+                let found = scene.clears_motion_while(&grown, &[&motion], FINE);
+                out.add(found, |out, found| out.scene_motion(&found));
+                let mut found = Vec::new();
+                scene.clears_motion_batch(&[&[&motion], &[&motion]], FINE, &mut found);
+                for found in found {
+                    out.add(found, |out, found| out.scene_motion(&found));
+                }
+            });
         }
         if case.mesh == searches.len() - 1 {
             everyone.push((robot, pose));
@@ -426,7 +474,45 @@ fn answer(input: &str, output: &str) -> Fallible<()> {
     for found in found {
         out.add(found, |out, found| out.minimum(&found));
     }
+    let mut found = Vec::new();
+    searches[last].per_link_batch(&robots, &mut found)?;
+    for found in found {
+        out.add(found, |out, links| links.iter().for_each(|link| out.minimum(link)));
+    }
+    let pair = RobotPair::new();
+    let shifted = robots.windows(2).map(|next| [next[0], (next[0].0, next[1].1)]);
+    let pairs: Vec<_> = shifted.collect();
+    let mut found = Vec::new();
+    pair.clears_batch(&pairs, 0.5, &mut found)?;
+    for found in found {
+        out.add(found, |out, clears| out.truth(clears));
+    }
+    let mut found = Vec::new();
+    let bent: Vec<_> = (0..SECTIONED).map(sections).collect();
+    let bend = |numbers: [[f64; 3]; 2]| {
+        let [first, second] = numbers;
+        [(first, 0.3), (second, 0.2)].map(|([length, x, y], radius)| BendingSection {
+            length,
+            bend: [x, y],
+            radius,
+        })
+    };
+    let bent: Vec<_> = bent.into_iter().map(bend).collect();
+    searches[last].clears_sections_batch(&bent, 5, &Pose::IDENTITY, 0.1, &mut found)?;
+    for found in found {
+        out.add(found, |out, clears| out.truth(clears));
+    }
     save(output, &out.0)
+}
+
+/// How many robots of two sections there are.
+const SECTIONED: u32 = 1000;
+
+/// The length and the curvatures of the sections of robot `k`. Some have no length.
+fn sections(k: u32) -> [[f64; 3]; 2] {
+    let times = |share: f64, period: u32| share * f64::from(k % period);
+    let length = if k % 97 == 96 { f64::NAN } else { 2.0 + times(0.5, 10) };
+    [[length, times(0.0625, 7), times(-0.03125, 5)], [2.0, 0.5 - times(0.125, 11), times(0.25, 3)]]
 }
 
 fn main() -> Fallible<()> {

@@ -158,7 +158,121 @@ static void arguments(const char *folder) {
             "null_pointer");
     IS_TRUE(pc_error_robot() == 1);
 
+    /* So does one bad matrix, and one bad robot of many links. */
+    bool truths[2];
+    const pc_minimum *links;
+    const size_t *firsts;
+    poses[16 + 3] = 0;
+    poses[16] = 2;
+    robots[1] = robot;
+    REFUSES(pc_mesh_clears_batch(mesh, robots, poses, 2, 1, truths, statuses), PC_REFUSED,
+            "no_rotation");
+    IS_TRUE(pc_error_robot() == 1 && statuses[0] == PC_OK && statuses[1] == PC_REFUSED);
+    IS_TRUE(truths[0] && !truths[1]);
+    REFUSES(pc_mesh_per_link_batch(mesh, robots, poses, 2, &links, &firsts, statuses), PC_REFUSED,
+            "no_rotation");
+    IS_TRUE(firsts[0] == 0 && firsts[1] == 2 && firsts[2] == 2 && links[0].distance == 1.5);
+    REFUSES(pc_mesh_per_link_batch(mesh, robots, NULL, 2, &links, NULL, statuses),
+            PC_BAD_ARGUMENT, "null_pointer");
+    ANSWERS(pc_mesh_per_link_batch(mesh, robots, NULL, 0, &links, &firsts, NULL));
+    IS_TRUE(firsts[0] == 0);
+    pc_robot_proximity pairs[2];
+    REFUSES(pc_pair_minimum_batch(pair, robots, poses, robots, poses, 2, pairs, statuses),
+            PC_REFUSED, "no_rotation");
+    IS_TRUE(pc_error_robot() == 1 && pairs[0].distance == 0);
+    REFUSES(pc_pair_clears_batch(pair, robots, poses, robots, NULL, 2, -1, truths, statuses),
+            PC_REFUSED, "negative");
+    IS_TRUE(pc_error_robot() == -1);
+    const pc_motion *motions[] = {motion, motion};
+    pc_robot_motion_answer apart[2];
+    ANSWERS(pc_pair_clears_motions_batch(pair, motions, motions, 2, 0, 0.01, apart, NULL));
+    IS_TRUE(apart[1].decision == PC_CONTACT);
+
+    /* Robots of sections. */
+    const double sections[] = {3, 0, 0, 3, NAN, 0}, up[] = {1, 0, 0, 0, 0, 1, 0, 0,
+                                                           0, 0, 1, 1, 0, 0, 0, 1};
+    REFUSES(pc_mesh_clears_sections_batch(mesh, sections, 1, RADII, 1, 2, 4, up, 0.5, truths,
+                                          statuses),
+            PC_REFUSED, "bad_curvature");
+    IS_TRUE(truths[0] && !truths[1] && pc_error_robot() == 1);
+    REFUSES(pc_mesh_clears_sections_batch(mesh, sections, 2, RADII, 3, 1, 4, up, 0, truths, NULL),
+            PC_BAD_ARGUMENT, "bad_length");
+    REFUSES(pc_mesh_clears_sections_batch(mesh, sections, SIZE_MAX, RADII, 1, SIZE_MAX, 4, up, 0,
+                                          truths, NULL),
+            PC_BAD_ARGUMENT, "bad_length");
+
+    /* Scenes. */
+    double between;
+    const size_t nested[] = {0, 1};
+    size_t second;
+    REFUSES(pc_scene_add(scene, "floor", mesh, 1, NULL, &second), PC_REFUSED, "name_taken");
+    IS_TRUE(strstr(pc_error_message(), "`floor`") != NULL);
+    pose[3] = NAN;
+    REFUSES(pc_scene_add(scene, "far", mesh, 1, pose, &second), PC_REFUSED, "not_finite");
+    pose[3] = 0;
+    /* It has no "far". */
     REFUSES(pc_scene_set_margin(scene, 1, 0), PC_REFUSED, "no_such_structure");
+    REFUSES(pc_scene_margin_between(scene, 1, 0, &between), PC_REFUSED, "no_such_structure");
+    REFUSES(pc_scene_set_margin_between(scene, 1, 0, 0), PC_REFUSED, "no_such_structure");
+    REFUSES(pc_scene_set_margin_between(scene, 0, 0, -1), PC_REFUSED, "negative");
+    ANSWERS(pc_scene_set_margin_between(scene, 0, 7, NAN));
+    ANSWERS(pc_scene_margin_between(scene, 0, 7, &between));
+    IS_TRUE(isnan(between));
+    REFUSES(pc_scene_set_solid(scene, 0, 1), PC_REFUSED, "not_solid");
+    IS_TRUE(strstr(pc_error_message(), "`floor`") != NULL);
+    ANSWERS(pc_scene_is_solid(scene, 0, truths));
+    IS_TRUE(!truths[0]);
+    REFUSES(pc_scene_is_solid(scene, 1, truths), PC_REFUSED, "no_such_structure");
+    ANSWERS(pc_scene_set_solid(scene, 0, 0));
+    REFUSES(pc_scene_set_robot_margin(scene, -1), PC_REFUSED, "negative");
+    REFUSES(pc_scene_set_self_margin(scene, -1), PC_REFUSED, "negative");
+    ANSWERS(pc_scene_prepare(scene));
+    ANSWERS(pc_scene_clears(scene, robots, NULL, 2, truths));
+    IS_TRUE(!truths[0]); /* the robots are one */
+    ANSWERS(pc_scene_set_nested(scene, nested, 1));
+    ANSWERS(pc_scene_clears(scene, robots, NULL, 2, truths));
+    IS_TRUE(truths[0]);
+    ANSWERS(pc_scene_set_nested(scene, NULL, 0));
+    pc_tightest slacks[2];
+    REFUSES(pc_scene_clears_batch(scene, robots, poses, 1, 2, truths, statuses), PC_REFUSED,
+            "no_rotation");
+    IS_TRUE(pc_error_robot() == 1 && truths[0] && !truths[1]);
+    IS_TRUE(strstr(pc_error_message(), "set 1: robot 0: ") == pc_error_message());
+    REFUSES(pc_scene_tightest_batch(scene, robots, poses, 2, 1, slacks, statuses), PC_REFUSED,
+            "no_rotation");
+    IS_TRUE(pc_error_robot() == 0 && isnan(slacks[0].slack));
+    REFUSES(pc_scene_clears_batch(scene, robots, NULL, SIZE_MAX / 2, 4, truths, statuses),
+            PC_BAD_ARGUMENT, "bad_length");
+    ANSWERS(pc_scene_clears_batch(scene, NULL, NULL, 0, 2, truths, statuses));
+    IS_TRUE(truths[0] && truths[1]);
+    pc_scene_motion_answer moving[2];
+    REFUSES(pc_scene_clears_motion_batch(scene, motions, 1, 2, -1, moving, statuses), PC_REFUSED,
+            "negative");
+    poses[16] = 1;
+    poses[16 + 3] = 1e300;
+    REFUSES(pc_scene_clears(scene, robots, poses, 2, truths), PC_REFUSED, "out_of_range");
+    IS_TRUE(pc_error_robot() == 1);
+    pc_structure_end ends[] = {{0, up, NULL, 0}, {0, NULL, VERTICES, 3}};
+    ANSWERS(pc_scene_clears_motion_while(scene, ends, 1, motions, 1, 0.01, moving));
+    IS_TRUE(moving[0].decision == PC_CLEAR);
+    ANSWERS(pc_scene_clears_motion_while(scene, ends + 1, 1, motions, 1, 0.01, moving));
+    REFUSES(pc_scene_clears_motion_while(scene, NULL, 1, motions, 1, 0.01, moving),
+            PC_BAD_ARGUMENT, "null_pointer");
+    ends[1].vertex_count = 2;
+    REFUSES(pc_scene_clears_motion_while(scene, ends + 1, 1, motions, 1, 0.01, moving), PC_REFUSED,
+            "vertex_count");
+    ends[1].vertices = (const double *)((const char *)VERTICES + 1);
+    REFUSES(pc_scene_clears_motion_while(scene, ends + 1, 1, motions, 1, 0.01, moving),
+            PC_BAD_ARGUMENT, "misaligned_pointer");
+    ends[1].pose = up;
+    REFUSES(pc_scene_clears_motion_while(scene, ends, 2, motions, 1, 0.01, moving),
+            PC_BAD_ARGUMENT, "bad_structure_end");
+    IS_TRUE(strstr(pc_error_message(), "`ends[1]`: ") == pc_error_message());
+    ends[0].structure = 1;
+    REFUSES(pc_scene_clears_motion_while(scene, ends, 1, motions, 1, 0.01, moving), PC_REFUSED,
+            "no_such_structure");
+
+    REFUSES(pc_mesh_prove(mesh, robot, NULL, 1, "proof.obj", &truth), PC_BAD_ARGUMENT, "bad_path");
     pc_scene *empty;
     REFUSES(pc_scene_new(-1, NAN, &empty), PC_REFUSED, "negative");
     IS_TRUE(empty == NULL);
@@ -212,6 +326,7 @@ static double *any_numbers(size_t count, double **to_free) {
 /* Questions with arguments of any kind. What they answer is not looked at. */
 static void fuzz(long rounds) {
     size_t answers = 0;
+    double any_poses[64];
     for (long round = 0; round < rounds; ++round) {
         const size_t points = bits() % 9, radii = bits() % 3 == 0 ? points : bits() % 3;
         const size_t each = bits() % 2 ? 1 : (points > 0 ? points - 1 : 0);
@@ -279,6 +394,44 @@ static void fuzz(long rounds) {
         answers += pc_self_query_minimum(alone, chain, &near) == PC_OK;
         answers += pc_scene_tightest(scene, both, NULL, bits() % 3, &tightest) == PC_OK;
         answers += pc_mesh_surface(asked, &surface) == PC_OK;
+        /* What is about lists. */
+        const size_t *firsts;
+        bool truths[4];
+        pc_status each_status[4];
+        pc_scene_motion_answer moved[4];
+        pc_robot_motion_answer apart[4];
+        const pc_chain *four[] = {one, chain, robot, one};
+        const pc_motion *motions[] = {linear, bending, base, path};
+        double *const matrices = pose == memory[4] && bits() % 2 ? any_poses : NULL;
+        const pc_structure_end ends[] = {{bits() % 3, bits() % 2 ? pose : NULL,
+                                          bits() % 2 ? vertices : NULL, bits() % 2 ? points : 0}};
+        const size_t width = bits() % 3, sets = width == 0 ? bits() % 5 : bits() % (4 / width + 1);
+        if (matrices != NULL)
+            for (int k = 0; k < 64; ++k)
+                matrices[k] = bits() % 64 == 0 ? any() : pose[k % 16];
+        pc_scene *crowd;
+        pc_scene_new(any(), any(), &crowd);
+        for (size_t k = bits() % 3; k > 0; --k)
+            pc_scene_add(crowd, k == 1 ? "one" : "other", asked, any(), bits() % 2 ? pose : NULL,
+                         &many);
+        pc_scene_set_solid(crowd, bits() % 2, (uint32_t)(bits() % 3));
+        pc_scene_set_margin_between(crowd, bits() % 2, bits() % 3, any());
+        answers += pc_mesh_per_link_batch(asked, four, matrices, bits() % 5, &links, &firsts,
+                                          each_status) == PC_OK;
+        answers += pc_mesh_clears_sections_batch(asked, start, points > 1 ? points / 2 : points,
+                                                 radius, radius_count, points > 1 ? 2 : bits() % 2,
+                                                 bits() % 9, pose, margin, truths, NULL) == PC_OK;
+        answers += pc_pair_clears_batch(pair, four, matrices, four + bits() % 2, NULL, bits() % 4,
+                                        margin, truths, each_status) == PC_OK;
+        answers += pc_pair_clears_motions_batch(pair, motions, motions + 1, bits() % 4, margin, 0.5,
+                                                apart, each_status) == PC_OK;
+        answers += pc_scene_clears_batch(crowd, four, matrices, width, sets, truths,
+                                         each_status) == PC_OK;
+        answers += pc_scene_clears_motion_batch(crowd, motions, width, sets, 0.5, moved,
+                                                each_status) == PC_OK;
+        answers += pc_scene_clears_motion_while(crowd, ends, bits() % 2, motions, bits() % 5, 0.5,
+                                                moved) == PC_OK;
+        pc_scene_free(crowd);
         pc_mesh_free(wall);
         pc_chain_free(chain);
         pc_tube_free(curve);

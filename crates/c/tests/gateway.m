@@ -15,6 +15,7 @@ function gateway(folder)
     assert(isequal(continuum.distance(mesh, both, 0.5, 'pose', up), [2.5; 3.5]));
     assert(isequal(continuum.distance(mesh, both, 0.5, 'pose', cat(3, eye(4), up)), [1.5; 3.5]));
     assert(isequal(continuum.clears(mesh, both, 0.5, 'margin', 2), logical([0; 1])));
+    assert(continuum.distance(mesh, robot, radii, 'Pose', up, 'CAPS', 'capsules') == 2.5);
     links = continuum.per_link(mesh, robot, radii);
     assert(isequal(size(links.on_robot), [2 3]) && isequal(links.segment, [1; 2]));
     assert(field(continuum.contacts_within(mesh, robot, radii, 'margin', 2), 'distance')(1) == 1.5);
@@ -59,7 +60,51 @@ function gateway(folder)
     two = {robot, radii; robot + [0 5 0], radii};
     assert(field(continuum.scene_tightest(scene, two), 'slack') == 0.5);
     assert(continuum.scene_clears(scene, {robot, radii, up}));
-    assert(continuum.scene_clears_motion(scene, linear, 'resolution', 0.01) == 1);
+    both_up = {both, radii, up};
+    assert(isequal(field(continuum.scene_tightest(scene, both_up), 'slack'), [1.5; 2.5]));
+    poses = cat(3, eye(4), up);
+    poses(3, 4, 1) = -1; % the floor is nearer
+    assert(isequal(continuum.scene_clears(scene, {robot, radii, poses}), logical([0; 1])));
+    found = continuum.scene_per_structure(scene, two);
+    assert(found.structure == 1 && found.robot == 1 && found.distance == 1.5);
+    found = continuum.scene_clears_motion(scene, linear, 'resolution', 0.01);
+    assert(found.is_clear && found.decision == 1 && isnan(found.structure));
+    found = continuum.scene_clears_motion(scene, [linear; rigid], 'resolution', 0.01);
+    assert(isequal(found.decision, [1; 1]));
+    found = continuum.scene_clears_motion(scene, [linear rigid], 'resolution', 0.01);
+    assert(found.decision == -1 && isequal(found.robots, [1 2])); % two robots in one place
+    found = continuum.scene_time_of_contact(scene, [linear rigid], 'resolution', 0.01);
+    assert(found.decision == -1);
+    down = eye(4);
+    down(3, 4) = 1.9;
+    found = continuum.scene_clears_motion_while(scene, {1, down}, rigid, 'resolution', 0.01);
+    assert(found.decision == -1 && found.structure == 1 && found.t < 1);
+    found = continuum.scene_clears_motion_while(scene, {1, floor_of}, rigid, 'resolution', 0.01);
+    assert(found.is_clear);
+    found = continuum.clears_motion_while(mesh, floor_of + [0 0 1.9], rigid, 'margin', 1, ...
+                                          'resolution', 0.01);
+    assert(found.decision == -1 && found.t < 1);
+    assert(isnan(field(continuum.clears_motion_while(mesh, floor_of, rigid, 'margin', 1, ...
+                                                     'resolution', 0.01), 't')));
+    continuum.scene_set_margin_between(scene, 1, 1, 2);
+    assert(continuum.scene_margin_between(scene, 1, 1) == 2);
+    assert(~continuum.scene_clears(scene, {robot, radii}));
+    continuum.scene_set_margin_between(scene, 1, 1, []);
+    assert(isnan(continuum.scene_margin_between(scene, 1, 1)));
+    continuum.scene_set_margin(scene, 1, 3);
+    continuum.scene_set_margin_between(scene, 1, 1, 1);
+    continuum.scene_set_pose(scene, 1, down);
+    assert(~continuum.scene_clears(scene, {robot, radii}));
+    continuum.scene_set_pose(scene, 1, eye(4));
+    continuum.scene_set_vertices(scene, 1, floor_of);
+    assert(continuum.scene_clears(scene, {robot, radii}));
+    assert(~continuum.scene_is_solid(scene, 1));
+    continuum.scene_set_solid(scene, 1, false);
+    links = continuum.per_link(mesh, both, radii);
+    assert(isequal(links.robot, [1; 1; 2; 2]) && links.distance(3) == 2.5);
+    bent = cat(3, [3 0 0], [3 2 0]);
+    assert(isequal(continuum.clears_sections(mesh, bent, 0.2, 'segments', 9, 'margin', 0.5, ...
+                                             'pose', up), logical([1; 0])));
     proof = fullfile(folder, 'octave.txt');
     assert(continuum.prove(mesh, robot, radii, 'margin', 1, 'file', proof));
     assert(~continuum.prove(mesh, robot, radii, 'margin', 2, 'file', proof));
@@ -68,7 +113,26 @@ function gateway(folder)
 
     refuses('bad_shape', @() continuum.minimum(mesh, [robot; robot]', 1));
     refuses('bad_shape', @() continuum.minimum(mesh, zeros(2, 2), 1));
-    refuses('bad_shape', @() continuum.per_link(mesh, both, 1));
+    refuses('bad_shape', @() continuum.contacts_within(mesh, both, 1, 'margin', 1));
+    refuses('bad_shape', @() continuum.scene_clears(scene, {both, 1; cat(3, both, robot), 1}));
+    refuses('bad_shape', @() continuum.scene_per_structure(scene, {both, 1}));
+    refuses('bad_shape', @() continuum.scene_clears_motion_while(scene, {1}, linear, ...
+                                                                 'resolution', 1));
+    refuses('bad_index', @() continuum.scene_set_margin(scene, 0, 1));
+    refuses('bad_index', @() continuum.scene_margin_between(scene, 1, 1.5));
+    refuses('no_such_structure', @() continuum.scene_set_margin(scene, 2, 1));
+    refuses('not_solid', @() continuum.scene_set_solid(scene, 1));
+    refuses('bad_type', @() continuum.scene_set_solid(scene, 1, 2));
+    refuses('name_taken', @() continuum.scene_add(scene, 'floor', mesh));
+    refuses('vertex_count', @() continuum.scene_set_vertices(scene, 1, robot(1:2, :)));
+    refuses('bad_options', @() continuum.clears_sections(mesh, [1 0 0], 1, 'margin', 0, ...
+                                                         'segments', 0));
+    refuses('missing_option', @() continuum.clears_sections(mesh, [1 0 0], 1));
+    try
+        continuum.minimum(mesh, cat(3, robot, robot * NaN), 1);
+    catch error
+        assert(~isempty(strfind(error.message, 'robot 1: point 0 ')), error.message); %#ok
+    end
     refuses('bad_shape', @() continuum.minimum(mesh, robot, 1, 'pose', eye(3)));
     refuses('bad_type', @() continuum.minimum(mesh, single(robot), 1));
     refuses('bad_type', @() continuum.minimum(mesh, robot * 1i, 1));

@@ -48,6 +48,8 @@ int main(int, char** argv) {
     IS_TRUE(mesh.distance(Chain({flat.data(), 3}, std::vector<double>{0.5, 0.5})) == 1.5);
     IS_TRUE(mesh.distance(Chain(Eigen::Map<const Eigen::Matrix3Xd>(flat.data(), 3, 3), 0.5)) ==
             1.5);
+    const std::vector<Eigen::Vector3d> vectors{{0, 0, 2}, {1, 0, 2}, {2, 0, 3}};
+    IS_TRUE(mesh.distance(Chain(vectors, 0.5)) == 1.5 && Points(vectors).size() == 3);
     const Eigen::MatrixX3d rows = Eigen::MatrixX3d::Zero(5, 3);
     IS_TRUE(kind_of([&] { Chain(rows, 0.5); }) == "bad_shape");
     IS_TRUE(kind_of([&] { Chain(Eigen::Matrix<double, 3, 5, Eigen::RowMajor>(), 0.5); }) ==
@@ -87,6 +89,17 @@ int main(int, char** argv) {
     const auto refused = clone.clears_batch({&robot, &robot}, 1, {pose, far});
     IS_TRUE(refused.statuses[0] == PC_OK && refused.statuses[1] == PC_REFUSED);
     IS_TRUE(refused.message.find("robot 1: ") == 0);
+    // A matrix that is no pose belongs to its robot, too.
+    const Eigen::Matrix4d twice = 2 * Eigen::Matrix4d::Identity();
+    const auto turned = clone.minimum_batch({&robot, &robot}, {pose, twice});
+    IS_TRUE(turned.statuses[0] == PC_OK && turned.statuses[1] == PC_REFUSED);
+    IS_TRUE(turned.answers[0].distance == 2.5 && std::isnan(turned.answers[1].distance));
+    const auto linked = clone.per_link_batch({&robot, &robot, &robot}, {pose, twice, pose});
+    IS_TRUE(linked.links[1].empty() && linked.links[2].size() == 2);
+    IS_TRUE(linked.links[2][0].distance == 2.5 && linked.message.find("robot 1: ") == 0);
+    IS_TRUE(kind_of([&] {
+                clone.clears_sections_batch(flat, 2, 0.5, 4, 0);
+            }) == "bad_length");
     IS_TRUE(kind_of([&] { clone.clears_batch({&robot, nullptr}, 1); }) == "null_pointer");
     IS_TRUE(kind_of([&] { clone.clears_batch({&robot}, -1); }) == "negative");
 
@@ -120,6 +133,11 @@ int main(int, char** argv) {
     IS_TRUE(pair.clears_motions(rigid, at_rest, 3, 0.01).decision == PC_CLEAR);
     IS_TRUE(pair.time_of_contact(rigid, at_rest, 5, 0.01).decision == PC_CONTACT);
     IS_TRUE(pair.clearance_of_motion(rigid, at_rest, 0.01).upper >= 4);
+    const auto nearest = pair.minimum_batch({&robot, &robot}, {&other, &other}, {}, {Pose(), pose});
+    IS_TRUE(nearest.answers[0].distance == 4 && nearest.answers[1].distance == 4);
+    const auto apart = pair.clears_motions_batch({&rigid}, {&at_rest}, 3, 0.01);
+    IS_TRUE(apart.answers[0].decision == PC_CLEAR);
+    IS_TRUE(kind_of([&] { pair.clears_batch({&robot}, {}, 1); }) == "bad_length");
     SelfQuery alone;
     IS_TRUE(alone.minimum(robot).distance == INFINITY && alone.clears(robot, 1));
     IS_TRUE(alone.clears_tube(tube, 0.1, 0.01) == Decision::Clear);
@@ -138,6 +156,16 @@ int main(int, char** argv) {
     scene.set_pose(structure, pose);
     IS_TRUE(scene.tightest({&robot}).slack == -1.5);
     scene.set_vertices(structure, floor);
+    scene.set_self_margin(none);
+    scene.set_nested({{0, 1}});
+    scene.prepare();
+    IS_TRUE(scene.clears({&robot, &robot}, {Eigen::Isometry3d(pose * pose * pose), pose}) == false);
+    scene.set_margin(structure, none);
+    IS_TRUE(kind_of([&] { scene.set_solid(structure); }) == "not_solid");
+    IS_TRUE(kind_of([&] { scene.add("floor", clone, 1); }) == "name_taken");
+    IS_TRUE(kind_of([&] { scene.clears_batch({&robot}, 2); }) == "bad_length");
+    const auto at = StructureEnd::pose(structure, pose.matrix());
+    IS_TRUE(scene.clears_motion_while({at}, {&rigid}, 0.01).decision == PC_CLEAR);
 
     // Files.
     IS_TRUE(kind_of([&] { Mesh::load("no such file.stl"); }) == "file");

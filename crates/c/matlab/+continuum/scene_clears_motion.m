@@ -1,10 +1,15 @@
-function decision = scene_clears_motion(varargin)
+function found = scene_clears_motion(varargin)
 %CONTINUUM.SCENE_CLEARS_MOTION  Says whether robots that move keep all margins.
-%   decision = continuum.scene_clears_motion(scene, motions, 'resolution', resolution)
+%   found = continuum.scene_clears_motion(scene, motions, 'resolution', resolution)
 %
-%   1: they do, -1: they do not, 0: undecided.
-%   motions: an array of motions, one for each robot.
+%   motions: a row with one motion for each robot. Several rows are several sets of robots, which
+%   run on all cores; the fields then have a row for each.
 %
-%   See also continuum.clears_motion
-    decision = continuum_mex('scene_clears_motion', varargin{:});
+%   found.is_clear: proven. found.decision: 1, -1, or 0: undecided.
+%   found.interval: the margins are kept before the first time, and may not be until the second.
+%   After a contact: found.t, found.upper, found.structure (NaN between robots), found.robots,
+%   found.on_first, found.on_second.
+%
+%   See also continuum.clears_motion, continuum.scene_clears_motion_while
+    found = continuum_mex('scene_clears_motion', varargin{:});
 end

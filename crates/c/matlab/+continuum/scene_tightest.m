@@ -5,7 +5,7 @@ function found = scene_tightest(varargin)
 %   robots: as for continuum.scene_clears.
 %
 %   found.slack, found.structure (NaN between robots), found.robots, found.on_first,
-%   found.on_second.
+%   found.on_second. Of B sets the fields have B rows.
 %
 %   See also continuum.scene_clears
     found = continuum_mex('scene_tightest', varargin{:});
