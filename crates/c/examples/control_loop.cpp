@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
     for (int tick = 0; tick < 3142; ++tick)
         step(tick);
     clear = 0;
+    least = INFINITY;
     const long before = allocations;
     auto next = Clock::now();
     for (int tick = 0; tick < ticks; ++tick) {
