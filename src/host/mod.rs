@@ -9,6 +9,7 @@ mod crest;
 mod decomposition;
 mod dispatcher;
 mod feature;
+mod forward;
 mod height_field;
 mod iterated;
 mod lens;

@@ -5,14 +5,13 @@
 //! the same with its own shapes: it sweeps them to a place inside their surface.
 
 use super::ContinuumDispatcher;
+use super::forward::{forward_manifolds, forward_queries};
 use super::link_cast::StartContact;
 use super::nonlinear_cast::{self, MovingShape};
-use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::details::NormalConstraints;
+use parry3d_f64::math::{Pose, Real};
 use parry3d_f64::query::{
-    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
-    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit,
-    ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
+    ContactManifold, DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher,
+    QueryDispatcher, ShapeCastHit, Unsupported,
 };
 use parry3d_f64::shape::Shape;
 
@@ -47,54 +46,7 @@ impl Default for WorldDispatcher {
 }
 
 impl<L: QueryDispatcher> QueryDispatcher for WorldDispatcher<L> {
-    fn intersection_test(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-    ) -> Result<ShapeIntersection, Unsupported> {
-        self.0.intersection_test(pos12, g1, g2)
-    }
-
-    fn distance(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-    ) -> Result<ShapeDistance, Unsupported> {
-        self.0.distance(pos12, g1, g2)
-    }
-
-    fn contact(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-    ) -> Result<Option<Contact>, Unsupported> {
-        self.0.contact(pos12, g1, g2, prediction)
-    }
-
-    fn closest_points(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        max_dist: Real,
-    ) -> Result<ClosestPoints, Unsupported> {
-        self.0.closest_points(pos12, g1, g2, max_dist)
-    }
-
-    fn cast_shapes(
-        &self,
-        pos12: &Pose,
-        local_vel12: Vector,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        options: ShapeCastOptions,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        self.0.cast_shapes(pos12, local_vel12, g1, g2, options)
-    }
+    forward_queries!(self, self.0, |answer| answer);
 
     fn cast_shapes_nonlinear(
         &self,
@@ -121,37 +73,5 @@ where
     C: Default + Copy + Send + Sync,
     L: PersistentQueryDispatcher<M, C>,
 {
-    fn contact_manifolds(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Result<(), Unsupported> {
-        self.0.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
-    }
-
-    fn contact_manifold_convex_convex(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        normal_constraints1: Option<&dyn NormalConstraints>,
-        normal_constraints2: Option<&dyn NormalConstraints>,
-        prediction: Real,
-        manifold: &mut ContactManifold<M, C>,
-    ) -> Result<(), Unsupported> {
-        let constraints = (normal_constraints1, normal_constraints2);
-        self.0.contact_manifold_convex_convex(
-            pos12,
-            g1,
-            g2,
-            constraints.0,
-            constraints.1,
-            prediction,
-            manifold,
-        )
-    }
+    forward_manifolds!(self, self.0, |answer| answer);
 }
