@@ -27,7 +27,8 @@
 //!
 //! The sum is 140 u, and [`SLACK`] is 256 u. The roundings of double precision and of the measured
 //! limit are negligible. For robots that are much farther apart than 2^16 times their size this
-//! test separates no links: [`heights`](super::heights) does.
+//! test separates no links, and all pairs are measured: of two robots of 30 links 10^7 sizes apart,
+//! `minimum` takes 21 us instead of 4 us, which a test in double precision would take.
 //!
 //! **Small normals.** A normal may vanish, or its square leave the range of numbers. A normal
 //! shorter than 2^-30 counts as that long, which is conservative. The limit is never negative. With

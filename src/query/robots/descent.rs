@@ -5,7 +5,6 @@
 //! 2. **Divide** the node with more links, until both have at most [`SWEPT`] links. A robot of some
 //!    dozen links does not need its tree.
 //! 3. **Sweep** such a pair of nodes: compare the balls around all their links at once ([`Sweep`]).
-//!    If the nodes are tiny in the frame, [`Heights`] separates their links in double precision.
 //! 4. **Seed.** If more than [`MANY`] pairs are left, or there is no limit yet, first measure the
 //!    pair with the nearest centres. Its [neighbours](Sweep::beside) are measured in the same
 //!    batch. One of them is often the closest of all, which lowers the limit most.
@@ -16,8 +15,7 @@
 //! follow the links found.
 
 use super::balls::{Balls, SWEPT, Sweep};
-use super::heights::Heights;
-use super::pair_frame::{NodeCapsule, PairFrame};
+use super::pair_frame::PairFrame;
 use crate::answer::RobotProximity;
 use crate::distance::lanes::set_bits;
 use crate::pair::{BATCH, LinkPairBatch, PlacedRobot};
@@ -233,10 +231,7 @@ impl Descent {
             if links.iter().all(|links| links.len() <= SWEPT) {
                 self.queried_from.clear();
                 self.queried_from.extend(links[0].clone().map(&queried_from));
-                let outlines = [0, 1].map(|robot: usize| {
-                    self.frame.outline(robots[robot], entry.places[robot].node)
-                });
-                limit = self.sweep(robots, links, &outlines, limit, &mut visit);
+                limit = self.sweep(robots, links, limit, &mut visit);
                 continue;
             }
             // Step 2.
@@ -262,7 +257,6 @@ impl Descent {
         &mut self,
         robots: [&PlacedRobot; 2],
         links: [Range<usize>; 2],
-        outlines: &[NodeCapsule; 2],
         mut limit: PairLimit,
         visit: &mut impl FnMut(&Measured) -> PairLimit,
     ) -> PairLimit {
@@ -276,28 +270,14 @@ impl Descent {
             &*second
         };
         let sweep = Sweep { balls: [first, second], links, queried_from };
-        let heights = Heights::of_tiny(&sweep, outlines, frame);
-        if let Some(heights) = &heights
-            && heights.at_least() > frame.length(limit.distance)
-        {
-            return limit;
-        }
         let mut near = [0; SWEPT];
-        let find_near = |limit: Real, near: &mut [u64; SWEPT]| {
-            let count = sweep.near(*level, limit, near);
-            heights.as_ref().map_or(count, |heights| {
-                heights.keep_near(limit, &mut near[..sweep.links[0].len()])
-            })
-        };
+        let find_near = |limit: Real, near: &mut [u64; SWEPT]| sweep.near(*level, limit, near);
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
         // Step 4.
         if !is_bounded || find_near(frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
-            looked_at = match &heights {
-                Some(heights) => heights.nearest(&sweep),
-                None => sweep.nearest(*level),
-            };
+            looked_at = sweep.nearest(*level);
             let pairs = looked_at.into_iter().flat_map(|pair| sweep.beside(pair));
             limit = measure(*level, robots, &sweep, together, pairs, limit, visit);
             if limit.excludes(0.0, sweep.links.each_ref().map(|links| links.start)) {

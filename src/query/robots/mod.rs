@@ -2,7 +2,6 @@
 
 mod balls;
 mod descent;
-mod heights;
 mod own_faces;
 mod pair_frame;
 mod pair_minima;

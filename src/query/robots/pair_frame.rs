@@ -35,19 +35,6 @@ impl NodeCapsule {
         let start = if end == 0 { self.start } else { self.start + self.along };
         Self { start, along: Vec3::zero(0.0), ..*self }
     }
-
-    /// Returns the length of the capsule.
-    pub fn size(&self) -> Real {
-        self.along.norm() + 2.0 * self.radius
-    }
-
-    /// Returns the unit vector along the shortest segment from this axis to another; `None` if the
-    /// axes meet.
-    pub fn way_to(&self, other: &Self) -> Option<Vector> {
-        let axes = segment_parameters(self.start - other.start, self.along, other.along);
-        let way = -Vector::from(axes.gap.normalised());
-        (way != Vector::ZERO).then_some(way)
-    }
 }
 
 /// The frame of a search over two robots.
