@@ -4,6 +4,7 @@
 //! time. A constant needs the instruction set's token, which every pack carries. This is why
 //! [`Scalar::lit`] takes a `self`.
 
+use super::Widest;
 use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};
 use fearless_simd::prelude::*;
 use fearless_simd::{Select, Simd};
@@ -218,9 +219,8 @@ pub(crate) trait Lane:
     /// The largest length whose products stay finite in the bounds and distances of a search.
     const FARTHEST: f64;
 
-    /// Whether the search by the hierarchy is compiled for every instruction set, and not for the
-    /// baseline alone. Double precision searches only links that single precision cannot resolve.
-    const HAS_WIDE_SEARCH: bool;
+    /// The widest instruction set for the search by the hierarchy.
+    const WIDEST_SEARCH: Widest;
 
     /// Rounds to the nearest number of this precision.
     fn round(value: f64) -> Self;
@@ -229,7 +229,7 @@ pub(crate) trait Lane:
 impl Lane for f32 {
     type Pack<S: Simd> = F32s<S>;
     const FARTHEST: f64 = 1.0e6;
-    const HAS_WIDE_SEARCH: bool = true;
+    const WIDEST_SEARCH: Widest = Widest::Avx512;
 
     #[inline(always)]
     fn round(value: f64) -> Self {
@@ -240,7 +240,7 @@ impl Lane for f32 {
 impl Lane for f64 {
     type Pack<S: Simd> = F64s<S>;
     const FARTHEST: f64 = 1.0e30;
-    const HAS_WIDE_SEARCH: bool = false;
+    const WIDEST_SEARCH: Widest = Widest::Sse2;
 
     #[inline(always)]
     fn round(value: f64) -> Self {

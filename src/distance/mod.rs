@@ -50,7 +50,7 @@ mod unfused;
 mod vec3;
 
 pub(crate) use disc_solver::{Convex, DiscSolver};
-pub(crate) use dispatch::dispatch;
+pub(crate) use dispatch::{Widest, dispatch};
 pub(crate) use face::Face;
 pub(crate) use modified_cylinder_modified_cylinder::TwoLinks;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};

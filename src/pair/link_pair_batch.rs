@@ -2,12 +2,11 @@
 //! [`PlacedLink::measure_link`](super::PlacedLink::measure_link) on every instruction set.
 
 use super::links_of_robots::capsules_apart;
-use super::measure_batch::narrowed;
 use super::pair_lanes::{BATCH, Rows, link, put_link, store};
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
 use crate::distance::lanes::{Pack, set_bits};
-use crate::distance::{Unfused, dispatch};
+use crate::distance::{Unfused, Widest, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
@@ -65,8 +64,7 @@ impl LinkPairBatch {
             self.packs[0].measure_first(bound);
             return;
         }
-        let level = narrowed(level, self.count);
-        dispatch!(level, simd => self.measure_packs::<Unfused<_>>(simd, bound));
+        dispatch!(Widest::Avx2, level, simd => self.measure_packs::<Unfused<_>>(simd, bound));
     }
 
     #[inline(always)]

@@ -70,7 +70,7 @@ fn measure_pack(
 
 /// Returns the instruction set whose packs `count` pairs fill best: half a pack takes nearly half
 /// the time.
-pub(super) fn narrowed(
+fn narrowed(
     level: Level,
     #[cfg_attr(not(any(target_arch = "x86", target_arch = "x86_64")), expect(unused))] count: usize,
 ) -> Level {

@@ -84,7 +84,7 @@ pub(super) fn gather<E: Lane>(
 ) {
     let limit = searched.axis_limit(bound);
     let mut gathering = CandidateGather::new(traversal.level, searched, limit, across, found);
-    dispatch!(E::HAS_WIDE_SEARCH, traversal.level, simd => {
+    dispatch!(E::WIDEST_SEARCH, traversal.level, simd => {
         traversal.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut gathering)
     });
     traversal.work.axis_distances += gathering.finish();
@@ -196,7 +196,7 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
     /// Tests the pending triangles and adds each that may be within the limit.
     #[inline(never)] // compiled once for all searches
     fn measure_pending(&mut self) {
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.test_pending::<E::Pack<_>>(simd));
+        dispatch!(E::WIDEST_SEARCH, self.level, simd => self.test_pending::<E::Pack<_>>(simd));
         self.waiting = 0;
     }
 

@@ -260,7 +260,7 @@ impl<E: Lane> DualTraversal<'_, E> {
                 squared_distance: zero,
             });
         }
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd))
+        dispatch!(E::WIDEST_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
 
     #[inline(always)]

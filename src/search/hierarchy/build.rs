@@ -12,7 +12,7 @@
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
-use crate::distance::{Scalar, dispatch};
+use crate::distance::{Scalar, Widest, dispatch};
 use crate::mesh::{BLOCK, Mesh, SearchFrame};
 use crate::threads::{both, each};
 use fearless_simd::Level;
@@ -93,7 +93,7 @@ impl<E: Lane> WideBvh<E> {
         let leaves = &self.leaves;
         let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
         each(&mut self.nodes.chunks_mut(TASK_SIZE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
-            dispatch!(E::HAS_WIDE_SEARCH, level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
+            dispatch!(Widest::Sse2, level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
     }
 }

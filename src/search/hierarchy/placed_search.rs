@@ -117,7 +117,7 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> bool {
         let limit = searched.axis_limit(bound);
         let mut near = CappedGather { limit, most, found, is_overfull: false };
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
+        dispatch!(E::WIDEST_SEARCH, self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
         !near.is_overfull
     }
 }

@@ -250,7 +250,7 @@ impl<E: Lane> Traversal<'_, E> {
 
     #[inline(never)] // compiled once per instruction set, not per goal
     fn search(&mut self, target: &mut Target<E>, start: [Option<u32>; 2]) {
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
+        dispatch!(E::WIDEST_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
     }
 
     #[inline(always)]
