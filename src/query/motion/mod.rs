@@ -26,8 +26,9 @@ mod self_motion;
 mod separating_planes;
 mod unresolved_piece;
 
+pub(crate) use approach_bound::half_length;
 #[cfg(feature = "robots")]
-pub(crate) use approach_bound::{half_length, midpoint};
+pub(crate) use approach_bound::midpoint;
 pub(crate) use interval_test::MarginQuery;
 pub(crate) use intervals::Sought;
 #[cfg(feature = "robots")]
