@@ -531,9 +531,9 @@ pc_status pc_mesh_clears_batch(pc_mesh *mesh,
                                pc_status *statuses);
 
 // The same for `count` robots of `section_count` sections of constant curvature each, on all cores.
-// A section is three numbers: its length, and its curvature towards x and towards y. The radii are
-// those of all robots: one for each section, or a single one. A section becomes `segments` straight
-// links. `pose` is that of all bases.
+// A section is three numbers: its length, and its curvature towards x and towards y. All robots have
+// the same radii: one for each section, or a single one. A section becomes `segments` straight
+// links. All bases have the same `pose`.
 pc_status pc_mesh_clears_sections_batch(pc_mesh *mesh,
                                         const double *sections,
                                         size_t section_count,

@@ -5,7 +5,7 @@
 //! an error. Any other pointer is trusted, as the header says.
 
 use crate::error::{Fault, pc_status};
-use crate::scene::pc_structure_end;
+use crate::structure_end::pc_structure_end;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::pose_from_matrix;
 use parry_continuum::proximity::StructureEnd;

@@ -16,6 +16,7 @@ mod motion;
 mod pair;
 mod robot;
 mod scene;
+mod structure_end;
 
 pub use answers::*;
 pub use error::*;
@@ -24,6 +25,7 @@ pub use motion::*;
 pub use pair::*;
 pub use robot::*;
 pub use scene::*;
+pub use structure_end::*;
 
 /// What the header says about threads: handles move from one to another, and several may read one.
 const _: () = {

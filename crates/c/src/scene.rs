@@ -9,6 +9,7 @@ use crate::error::{Fault, pc_status};
 use crate::mesh::{fill, pc_mesh, placed, write_each};
 use crate::motion::pc_motion;
 use crate::robot::{pc_chain, pc_tube};
+use crate::structure_end::pc_structure_end;
 use parry_continuum::proximity::{Scene, SceneContact, SceneError, StructureProximity};
 use std::ffi::c_char;
 
@@ -20,20 +21,6 @@ pub struct pc_scene {
     structures: Vec<pc_structure_proximity>,
     found_contacts: Vec<SceneContact>,
     contacts: Vec<pc_scene_contact>,
-}
-
-/// Where a structure of a scene is at the end of a motion: at a pose, or with other vertices.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct pc_structure_end {
-    /// The structure.
-    pub structure: usize,
-    /// The pose to which it moves as a whole, or NULL.
-    pub pose: *const f64,
-    /// The places to which its vertices move, in the mesh's frame, or NULL.
-    pub vertices: *const f64,
-    /// How many vertices there are; 0 with a pose.
-    pub vertex_count: usize,
 }
 
 impl pc_scene {
