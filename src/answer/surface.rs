@@ -23,6 +23,7 @@ pub struct SurfaceReport {
 }
 
 /// A group of boundary edges, connected by their corners. A boundary edge belongs to one triangle.
+/// Corners on the side of a triangle divide it into edges, so that T-vertices are no opening.
 ///
 /// Most often it is one loop. Loops that share a corner are one opening. Edges that lie on one line
 /// within the rounding of their coordinates are a seam, not an opening.

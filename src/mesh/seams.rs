@@ -57,6 +57,8 @@ pub(crate) struct Seams {
     /// Sorted by triangle.
     seams: Vec<Seam>,
     is_loose: Vec<bool>,
+    /// The places between the ends of open edges, with the edge's ends in ascending order. Sorted.
+    on_edges: Vec<([u32; 2], u32)>,
 }
 
 /// The open corners that touch another open corner, or an open edge.
@@ -159,13 +161,27 @@ impl Seams {
         for vertex in 0..vertices.len() {
             gaps[vertex] = gaps[corners[vertex] as usize];
         }
-        let seams = find_seams(vertices, corners, &gaps, open, touching);
+        let on_edges = places_on_edges(corners, open, touching);
+        let seams = find_seams(vertices, corners, &gaps, open, &on_edges);
         let mut is_loose: Vec<_> = indices
             .iter()
             .map(|triangle| triangle.iter().any(|&vertex| gaps[vertex as usize] > 0.0))
             .collect();
         seams.iter().for_each(|seam| is_loose[seam.triangle as usize] = true);
-        Self { gaps, seams, is_loose }
+        let ascending = |ends: [u32; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let ends = |edge: u32| ascending(open[edge as usize].ends.map(|end| corners[end as usize]));
+        let mut on_edges: Vec<_> =
+            on_edges.into_iter().map(|(corner, edge)| (ends(edge), corner)).collect();
+        on_edges.sort_unstable();
+        on_edges.dedup();
+        Self { gaps, seams, is_loose, on_edges }
+    }
+
+    /// Returns the places between the ends of an edge, which are given in ascending order.
+    pub(super) fn on_edge(&self, ends: [u32; 2]) -> impl Iterator<Item = u32> {
+        let first = self.on_edges.partition_point(|(edge, _)| *edge < ends);
+        let at = self.on_edges[first..].iter().take_while(move |(edge, _)| *edge == ends);
+        at.map(|(_, corner)| *corner)
     }
 
     /// Returns true if the triangle shares a corner or a stretch only within rounding.
@@ -186,14 +202,8 @@ impl Seams {
     }
 }
 
-/// Returns each seam twice, once for each of its triangles.
-fn find_seams(
-    vertices: &[Vector],
-    corners: &[u32],
-    gaps: &[Real],
-    open: &[OpenEdge],
-    touching: &Touching,
-) -> Vec<Seam> {
+/// Returns the places between the ends of open edges, with the numbers of the edges. Sorted.
+fn places_on_edges(corners: &[u32], open: &[OpenEdge], touching: &Touching) -> Vec<(u32, u32)> {
     let place = |vertex: u32| corners[vertex as usize];
     let ends = |edge: u32| open[edge as usize].ends.map(place);
     // Corners that are at the place of an end of the edge are shared by the rings.
@@ -202,6 +212,18 @@ fn find_seams(
         between.filter(|&(corner, edge)| !ends(edge).contains(&corner)).collect();
     on_edges.sort_unstable();
     on_edges.dedup();
+    on_edges
+}
+
+/// Returns each seam twice, once for each of its triangles.
+fn find_seams(
+    vertices: &[Vector],
+    corners: &[u32],
+    gaps: &[Real],
+    open: &[OpenEdge],
+    on_edges: &[(u32, u32)],
+) -> Vec<Seam> {
+    let ends = |edge: u32| open[edge as usize].ends.map(|end| corners[end as usize]);
     let is_on = |corner: u32, edge: u32| {
         ends(edge).contains(&corner) || on_edges.binary_search(&(corner, edge)).is_ok()
     };
@@ -223,7 +245,7 @@ fn find_seams(
             seams.push(Seam { triangle: other, other: one, ends, gap });
         }
     };
-    for &(corner, edge) in &on_edges {
+    for &(corner, edge) in on_edges {
         let first = edges_at.partition_point(|&(at, _)| at < corner);
         let at_corner = edges_at[first..].iter().take_while(|&&(at, _)| at == corner);
         let mut is_alone = true;

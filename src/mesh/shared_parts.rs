@@ -106,6 +106,17 @@ impl SharedParts {
         self.seams.as_ref().map_or(&[], |seams| seams.of(triangle))
     }
 
+    /// Returns true if triangles share a corner or a stretch only within rounding.
+    pub(crate) fn has_seams(&self) -> bool {
+        self.seams.is_some()
+    }
+
+    /// Returns the places that lie between the ends of an open edge, within rounding. The places of
+    /// the ends are given in ascending order.
+    pub(crate) fn on_edge(&self, ends: [u32; 2]) -> impl Iterator<Item = u32> {
+        self.seams.iter().flat_map(move |seams| seams.on_edge(ends))
+    }
+
     /// Returns a bound on the distance between two corners at the place of a vertex.
     pub(crate) fn gap(&self, vertex: u32) -> Real {
         self.seams.as_ref().map_or(0.0, |seams| seams.gap(vertex))

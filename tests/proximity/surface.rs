@@ -7,7 +7,7 @@ use continuum_testing::{Random, rounds};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::shape::{Ball, Cuboid, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Proximity, Side, SurfaceReport};
+use parry_continuum::proximity::{BvhSearch, Opening, Proximity, Side, SurfaceReport};
 use std::collections::BTreeMap;
 
 type Mesh = (Vec<Vector>, Vec<[u32; 3]>);
@@ -121,6 +121,72 @@ fn a_slit_is_narrow_and_a_seam_is_closed() {
         assert_eq!(count(&seam), 0, "{pose:?}");
         let found = report(&slit);
         assert!((found.openings[0].width - 1e-3).abs() < 1e-10, "{found:?}");
+    }
+}
+
+/// The six faces of a box, each a grid of its own fineness, so that the corners of one face lie
+/// within the edges of the other: at T-vertices, around the corners of the box too.
+fn patched_box(random: &mut Random, place: &dyn Fn(Vector) -> Vector) -> Vec<Mesh> {
+    let sizes = [7.0, 11.0, 13.0];
+    let mut faces = Vec::new();
+    for axis in 0..3 {
+        for is_high in [false, true] {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let [columns, rows] = [0; 2].map(|_| 1 + random.below(5));
+            let at = |column: u32, row: u32| {
+                let mut point = [0.0; 3];
+                point[axis] = if is_high { sizes[axis] } else { 0.0 };
+                point[u] = sizes[u] * f64::from(column) / f64::from(columns);
+                point[v] = sizes[v] * f64::from(row) / f64::from(rows);
+                place(Vector::from(point))
+            };
+            let vertices =
+                (0..=rows).flat_map(|row| (0..=columns).map(move |column| at(column, row)));
+            let squares = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+            let triangles = squares.flat_map(|(row, column)| {
+                let a = row * (columns + 1) + column;
+                let [b, c, d] = [a + 1, a + columns + 1, a + columns + 2];
+                if is_high { [[a, b, d], [a, d, c]] } else { [[a, d, b], [a, c, d]] }
+            });
+            faces.push((vertices.collect(), triangles.collect()));
+        }
+    }
+    faces
+}
+
+/// T-vertices are no opening; a face that is missing is one, and a face that is turned is found.
+#[test]
+fn grids_of_different_fineness_close_a_box() {
+    let joined = |faces: &[Mesh]| {
+        let mut mesh = Mesh::default();
+        for (vertices, triangles) in faces {
+            let first = mesh.0.len() as u32;
+            mesh.0.extend(vertices);
+            mesh.1.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        }
+        mesh
+    };
+    let mut random = Random::new(101);
+    for round in 0..rounds(200) {
+        let scale = 2.0_f64.powi(random.below(600) as i32 - 300);
+        let pose = if round == 0 { Pose::IDENTITY } else { random.pose(100.0) };
+        let mut faces = patched_box(&mut random, &|point| (pose * point) * scale);
+        let found = report(&joined(&faces));
+        assert!(found.is_sound() && found.bounds_volume(), "{round}: {found:?}");
+        let face = random.below(6) as usize;
+        faces[face].1.iter_mut().for_each(|corners| corners.swap(0, 1));
+        let found = report(&joined(&faces));
+        assert!(found.openings.is_empty() && found.nonmanifold_edges == 0, "{round}: {found:?}");
+        assert!(found.misoriented_edges >= 4, "{round}: {found:?}");
+        let missing = faces.remove(face);
+        let found = report(&joined(&faces));
+        assert_eq!((found.openings.len(), found.misoriented_edges), (1, 0), "{round}: {found:?}");
+        // The other faces come to its four sides.
+        let Opening { edges, centre, .. } = found.openings[0];
+        assert!(edges >= 4);
+        let [low, high] = [missing.0[0], missing.0[missing.0.len() - 1]];
+        let reach = (high - low).length();
+        assert!((centre - (low + high) * 0.5).length() < 0.5 * reach, "{round}: {centre}");
     }
 }
 

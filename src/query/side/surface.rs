@@ -2,10 +2,12 @@
 //!
 //! # Definitions
 //! - *face*: a triangle whose corners are at three different places. Other triangles have no edges.
+//! - *edge*: a stretch of a face's side between two places of corners. Corners that lie on an open
+//!   side within rounding divide it (`mesh/seams.rs`). So the faces at a T-vertex share their edges.
 //! - *boundary edge*: an edge of exactly one face.
 //! - *opening*: boundary edges that are connected by their corners, unless they are a seam.
-//! - *seam*: boundary edges within [`SEAM_WIDTH`] of one line, such as the three around a corner in
-//!   the middle of a longer edge. Nothing leaves through a seam.
+//! - *seam*: boundary edges within [`SEAM_WIDTH`] of one line, such as those between corners that
+//!   divide two sides in different orders. Nothing leaves through a seam.
 //! - *lid* of an opening: a triangle for each boundary edge, with the opening's centre.
 //!
 //! # What lids are for
@@ -69,41 +71,83 @@ impl Surface {
     }
 }
 
+/// The faces of an edge.
+struct Edge {
+    /// The places of its ends, in ascending order.
+    ends: [u32; 2],
+    faces: usize,
+    /// How many of the faces have it from the lower place to the other.
+    ascending: usize,
+}
+
 /// Counts the edges by their faces, and returns the boundary edges as pairs of places. Each ring of
-/// an edge is walked once.
+/// a side is walked once.
 fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32; 2]>) {
     let places =
         |triangle: u32| mesh.indices()[triangle as usize].map(|vertex| parts.first_at(vertex));
     let mut is_counted = vec![[false; PARTS]; mesh.len()];
     let (mut report, mut boundary) = (SurfaceReport::default(), Vec::new());
+    let mut count = |Edge { ends, faces, ascending }: Edge| {
+        report.unbalanced_edges += usize::from(faces > 1 && 2 * ascending != faces);
+        match (faces, ascending) {
+            (0, _) | (2, 1) => {}
+            (1, _) => boundary.push(ends),
+            (2, _) => report.misoriented_edges += 1,
+            _ => report.nonmanifold_edges += 1,
+        }
+    };
+    // The edges of all sides, if edges of different sides may be the same.
+    let mut divided = Vec::new();
     for triangle in 0..mesh.len() as u32 {
-        for edge in 3..PARTS {
-            if is_counted[triangle as usize][edge] {
+        for side in 3..PARTS {
+            if is_counted[triangle as usize][side] {
                 continue;
             }
-            // The faces at the edge, and how many of them have it from the lower place to the
-            // other.
-            let (mut faces, mut ascending) = (0, 0);
-            let mut ends = [0; 2];
-            for (triangle, edge) in parts.ring(triangle, edge) {
-                is_counted[triangle as usize][edge] = true;
+            let mut edge = Edge { ends: [0; 2], faces: 0, ascending: 0 };
+            for (triangle, side) in parts.ring(triangle, side) {
+                is_counted[triangle as usize][side] = true;
                 let corners @ [a, b, c] = places(triangle);
                 if a != b && b != c && c != a {
-                    ends = ends_of(corners, edge);
-                    faces += 1;
-                    ascending += usize::from(ends[0] < ends[1]);
+                    let [from, to] = ends_of(corners, side);
+                    edge.ends = [from.min(to), from.max(to)];
+                    edge.faces += 1;
+                    edge.ascending += usize::from(from < to);
                 }
             }
-            report.unbalanced_edges += usize::from(faces > 1 && 2 * ascending != faces);
-            match (faces, ascending) {
-                (0, _) | (2, 1) => {}
-                (1, _) => boundary.push(ends),
-                (2, _) => report.misoriented_edges += 1,
-                _ => report.nonmanifold_edges += 1,
+            if parts.has_seams() {
+                divide(mesh.vertices(), parts, &edge, &mut divided);
+            } else {
+                count(edge);
             }
         }
     }
+    divided.sort_unstable_by_key(|edge| edge.ends);
+    for same in divided.chunk_by(|one, other| one.ends == other.ends) {
+        let [faces, ascending] =
+            same.iter().fold([0, 0], |sum, edge| [sum[0] + edge.faces, sum[1] + edge.ascending]);
+        count(Edge { ends: same[0].ends, faces, ascending });
+    }
     (report, boundary)
+}
+
+/// Divides a side at the corners on it.
+fn divide(vertices: &[Vector], parts: &SharedParts, side: &Edge, edges: &mut Vec<Edge>) {
+    let [low, high] = side.ends;
+    let [from, to] = side.ends.map(|end| vertices[end as usize]);
+    let along = direction(to - from);
+    let way = |place: u32| along.dot(vertices[place as usize] - from);
+    let mut places: Vec<_> = parts.on_edge(side.ends).collect();
+    places.sort_unstable_by(|&one, &other| way(one).total_cmp(&way(other)));
+    let mut before = low;
+    for place in places.into_iter().chain([high]) {
+        let descending = side.faces - side.ascending;
+        edges.push(Edge {
+            ends: [before.min(place), before.max(place)],
+            faces: side.faces,
+            ascending: if before < place { side.ascending } else { descending },
+        });
+        before = place;
+    }
 }
 
 /// Returns the edges in groups that are connected by their ends. Ends are below `places`.
