@@ -127,7 +127,8 @@ function update() {
     withRobot((wall, robot, pose) => {
       const answers = wall.ask(robot, pose);
       answered = { answers, margin, farthest: Math.max(FARTHEST, 2 * margin) };
-      show([...wall.notes(), ...robot.notes(), ...answers.doubts()]);
+      const ofMargin = wall.margin_doubt(margin);
+      show([...wall.notes(), ...robot.notes(), ...answers.doubts(), ...(ofMargin ? [ofMargin] : [])]);
     });
     nameRobot(true);
   } catch (error) {

@@ -1,12 +1,12 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
-//! wall, a radius in another unit, or a wall without an inside. The remedy is in the words of the
-//! options.
+//! wall, a radius or a margin in another unit, points out of order, or a wall without an inside. The
+//! remedy is in the words of the options.
 
-use crate::number::short;
+use crate::number::{all_digits, short};
 use crate::options::Options;
 use crate::robot::Robot;
 use crate::wall::Wall;
-use mesh_files::{Bounds, Change, Frame, misfits, radius_doubt};
+use mesh_files::{Bounds, Change, Frame, margin_doubt, misfits, radius_doubt};
 use parry_continuum::parry::math::{Pose, Vector};
 
 /// Returns one line for each doubt.
@@ -25,7 +25,25 @@ pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<S
     let scale = misfits.remedy.map_or(1.0, |remedy| remedy.scale);
     let mut doubts = misfits.with_remedy(|change| options(change, my, wall));
     doubts.extend(radius_in_another_unit(my, robots, scale, &bounds));
+    doubts.extend(my.margin.and_then(|margin| margin_doubt(margin, &bounds)));
+    doubts.extend(in_files(my, robots));
     doubts.extend(wall.search.surface().doubts());
+    doubts
+}
+
+/// Returns the doubts about the robot's file; of many shapes, about the first doubtful one.
+fn in_files(my: &Options, robots: &[Robot]) -> Vec<String> {
+    let mut doubtful = robots.iter().filter(|robot| !robot.doubts.is_empty());
+    let Some(robot) = doubtful.next() else { return Vec::new() };
+    let of = match &my.shapes {
+        Some(_) => format!("shape {}: ", all_digits(robot.number)),
+        None => String::new(),
+    };
+    let mut doubts: Vec<_> = robot.doubts.iter().map(|doubt| format!("{of}{doubt}")).collect();
+    let others = doubtful.count();
+    if others > 0 {
+        doubts.push(format!("the points of {others} other shapes look doubtful too"));
+    }
     doubts
 }
 

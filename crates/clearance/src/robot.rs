@@ -18,6 +18,8 @@ pub struct Robot {
     pub frame: Option<Frame>,
     /// The number of points in the file that are left out, because they have no position.
     pub skipped_points: usize,
+    /// What looks like a mistake in the file.
+    pub doubts: Vec<String>,
 }
 
 /// Reads one robot.
@@ -58,6 +60,6 @@ fn robot(number: f64, line: Centreline, path: &Path, my: &Options) -> Result<Rob
             ));
         }
     };
-    let Centreline { frame, skipped_points, .. } = line;
-    Ok(Robot { number, points, radii, has_own_radii, frame, skipped_points })
+    let Centreline { frame, skipped_points, doubts, .. } = line;
+    Ok(Robot { number, points, radii, has_own_radii, frame, skipped_points, doubts })
 }

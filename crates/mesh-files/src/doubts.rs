@@ -8,6 +8,8 @@
 //!    sizes nearer to one another: otherwise it hides a wrong pose.
 //! 3. Compare the radius with the box around the mesh.
 //!
+//! A margin that is tiny beside the mesh, and a robot that turns back, are doubted too.
+//!
 //! The box of a robot is the box of its points, without the radii, whose unit may be another one.
 
 use std::ops::RangeInclusive;
@@ -194,6 +196,56 @@ pub fn scales_radius(radius: f64, scale: f64, mesh: &Bounds) -> bool {
     let is_usual = |radius: f64| radius_doubt(radius, mesh).is_none();
     let off = |radius: f64| (radius / mesh.size() / TYPICAL_RADIUS).ln().abs();
     is_usual(radius * scale) || (!is_usual(radius) && off(radius * scale) < off(radius))
+}
+
+/// A margin other than 0 is at least this share of the diagonal of the mesh's box. Margins of
+/// millimetres that are written in metres are smaller; margins of 1/20 mm in an aorta are larger.
+const LEAST_MARGIN: f64 = 1e-4;
+
+/// Doubts a margin that is less than 1/10,000 of the diagonal of the mesh's box. A margin of 0 is
+/// never doubted.
+pub fn margin_doubt(margin: f64, mesh: &Bounds) -> Option<String> {
+    let size = mesh.size();
+    (margin > 0.0 && margin < LEAST_MARGIN * size).then(|| {
+        format!(
+            "the margin {} is small beside the mesh's box, which measures {}; check its unit",
+            short(margin),
+            fixed(size)
+        )
+    })
+}
+
+/// Steps shorter than this share of the mean step have no direction: their ends are one point that
+/// was rounded in different ways.
+const SHORT_STEP: f64 = 0.01;
+
+/// Doubts a robot that turns by more than 90 degrees between two steps: its points may be out of
+/// order, or belong to several robots, or one of them may be wrong.
+pub fn sharp_turns(points: &[[f64; 3]]) -> Option<String> {
+    let step = |from: &[f64; 3], to: &[f64; 3]| [0, 1, 2].map(|axis| to[axis] - from[axis]);
+    let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+    let steps = || points.windows(2).map(|pair| step(&pair[0], &pair[1]));
+    let mean = steps().map(|step| length(step) / (points.len() - 1) as f64).sum::<f64>();
+    let mut before: Option<[f64; 3]> = None;
+    let mut turns = Vec::new();
+    for (index, step) in steps().enumerate() {
+        let own = length(step);
+        if own > SHORT_STEP * mean && own.is_finite() {
+            let unit = step.map(|x| x / own);
+            let along = before.map(|before| (0..3).map(|axis| before[axis] * unit[axis]).sum());
+            turns.extend(along.filter(|along: &f64| *along < 0.0).map(|_| index));
+            before = Some(unit);
+        }
+    }
+    let first = *turns.first()?;
+    let others = match turns.len() {
+        1 => String::new(),
+        count => format!(", and at {} other points", count - 1),
+    };
+    Some(format!(
+        "the robot turns by more than 90 degrees at point {first}{others}; check the order of the \
+         points, and whether they are of one robot"
+    ))
 }
 
 /// Numbers from here on are written with an exponent.

@@ -30,7 +30,10 @@ mod text;
 pub use centreline::{
     Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
 };
-pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt, scales_radius};
+pub use doubts::{
+    Bounds, Change, Misfits, RadiusDoubt, margin_doubt, misfits, radius_doubt, scales_radius,
+    sharp_turns,
+};
 pub use error::{MeshFileError, list_labels};
 #[cfg(feature = "label-maps")]
 use label_map::Fault;

@@ -190,7 +190,8 @@ fn made(
 /// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv,
 /// .txt, .dat) with x,y,z and optionally the radius in its lines. A heading is optional: it names
 /// x,y,z, and r,a,s or l,p,s state the frame. Units in its names, such as ``x [m]``, are converted
-/// to millimetres.
+/// to millimetres. A warning names what looks like a mistake: a robot that turns by more than 90
+/// degrees at a point, and columns whose names do not say that they are the position.
 ///
 /// Parameters
 /// ----------
@@ -226,12 +227,15 @@ pub(crate) fn load_centreline<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = Options::scaled(scale).with_line(line.map(|line| line as usize));
     let source = Source::of(path)?;
-    let read = match source {
+    let (name, read) = match source {
         Source::Path(path) => {
-            interruptible(py, move || mesh_files::load_centreline(&path, &options))?
+            let name = path.display().to_string();
+            (name, interruptible(py, move || mesh_files::load_centreline(&path, &options))?)
         }
         Source::File(path, bytes) => {
-            interruptible(py, move || mesh_files::centreline_from_bytes(&path, &bytes, &options))?
+            let name = path.display().to_string();
+            let read = move || mesh_files::centreline_from_bytes(&path, &bytes, &options);
+            (name, interruptible(py, read)?)
         }
         Source::Mesh(..) => {
             let text = "`path` is a mesh; give a path or a file object of a centreline";
@@ -239,6 +243,9 @@ pub(crate) fn load_centreline<'py>(
         }
     };
     let mut read = read.map_err(|error| refuse(py, &error))?;
+    for doubt in &read.doubts {
+        warn(py, &format!("{name}: {doubt}"))?;
+    }
     let frame = in_frame(&mut read.points, read.frame, frame).map(Frame::name);
     let points = array(py, vec![read.points.len(), 3], read.points.into_flattened())?;
     let points = crate::output::framed(points, frame)?;

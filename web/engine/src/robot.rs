@@ -35,6 +35,7 @@ pub struct Line {
     pub states_frame: bool,
     pub name: String,
     skipped_points: usize,
+    doubts: Vec<String>,
 }
 
 impl Line {
@@ -109,6 +110,7 @@ impl Robot {
             states_frame: read.frame.is_some(),
             name: name.to_owned(),
             skipped_points: read.skipped_points,
+            doubts: read.doubts,
         };
         Ok(Self { chain, line: Some(line) })
     }
@@ -119,13 +121,13 @@ impl Robot {
         line.frame.map(|frame| frame.name().to_owned())
     }
 
-    /// What was left out of the file.
+    /// What was left out of the file, and what looks like a mistake in it.
     pub fn notes(&self) -> Vec<String> {
-        let line = self.line.iter().filter(|line| line.skipped_points > 0);
-        line.map(|line| {
-            format!("left out of {}: {} points without a position", line.name, line.skipped_points)
-        })
-        .collect()
+        let Some(Line { name, skipped_points, doubts, .. }) = &self.line else { return Vec::new() };
+        let skipped = (*skipped_points > 0)
+            .then(|| format!("left out of {name}: {skipped_points} points without a position"));
+        let doubts = doubts.iter().map(|doubt| format!("{name}: {doubt}"));
+        skipped.into_iter().chain(doubts).collect()
     }
 
     /// How far each tube can be out.

@@ -122,6 +122,11 @@ impl Wall {
         self.notes.clone()
     }
 
+    /// Why the unit of a margin may be wrong.
+    pub fn margin_doubt(&self, margin: Real) -> Option<String> {
+        mesh_files::margin_doubt(margin, &self.bounds()?)
+    }
+
     /// Size, frame and unit, in one line.
     pub fn describe(&self) -> String {
         let count = self.search.triangles().len();

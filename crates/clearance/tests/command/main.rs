@@ -5,6 +5,7 @@ mod answers;
 mod files;
 mod labels;
 mod margin;
+mod mistakes;
 mod openings;
 mod readme;
 
@@ -25,6 +26,11 @@ fn refuse(arguments: &[&str], expected: &str) {
 /// The exit status, the output and the errors of a command.
 fn run(arguments: &[&str]) -> (Option<i32>, String, String) {
     programs::run(COMMAND, arguments)
+}
+
+/// What is printed as a warning.
+fn warnings(error: &str) -> Vec<&str> {
+    error.lines().filter_map(|line| line.strip_prefix("warning: ")).collect()
 }
 
 /// The least distance in the last line.

@@ -1,6 +1,6 @@
 //! Walls that are open or badly joined are announced, and `--inside` decides by the side.
 
-use crate::{refuse, run};
+use crate::{refuse, run, warnings};
 use continuum_programs::file;
 
 /// A box of 60, without the faces of some numbers. It has two triangles on each side: the two at
@@ -30,11 +30,6 @@ fn room_without(name: &str, left_out: &[usize], turned: &[usize]) -> String {
         }
     });
     file(name, &(corners.collect::<String>() + &faces.collect::<String>()))
-}
-
-/// What is printed as a warning.
-fn warnings(error: &str) -> Vec<&str> {
-    error.lines().filter_map(|line| line.strip_prefix("warning: ")).collect()
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! 2. Otherwise the only triple of names that end or begin with x, y, z and may be a position, such
 //!    as `pos_x` or `Tx`. Rotations, directions, velocities and forces are none.
 //!
-//! Two triples that may be the position are an error, which names both.
+//! Two triples that may be the position are an error, which names both. So are two columns that may
+//! be the radius. A triple whose name does not say that it is a position is read with a doubt.
 
 use crate::Frame;
 use crate::text::{shown, to_mm, unit_in_mm};
@@ -120,9 +121,14 @@ pub struct Columns {
     pub shape: Option<usize>,
     /// The columns that may number the lines of a file, the most likely one first.
     pub lines: Vec<usize>,
+    /// The columns that may tell the robots of a file apart, or their times. Points may have times
+    /// of their own.
+    pub times: Vec<usize>,
     /// The column in which 3D Slicer says whether a point has a position.
     pub defined: Option<usize>,
     pub frame: Option<Frame>,
+    /// What makes the choice of the columns doubtful.
+    pub doubts: Vec<String>,
     /// The number of columns that a line may have.
     pub most: usize,
     pub has_heading: bool,
@@ -140,8 +146,10 @@ impl Columns {
             units: [None; 2],
             shape: (first > 0).then_some(0),
             lines: Vec::new(),
+            times: Vec::new(),
             defined: None,
             frame: None,
+            doubts: Vec::new(),
             most: first + 4,
             has_heading: false,
             line: 1,
@@ -159,27 +167,38 @@ impl Columns {
             return fault(*line, format!("has '{name}' in column {}", column + 1));
         }
         let is_free = |column: usize| shape != Some(column);
-        let (axes, frame) = position(*line, names, &is_free)?;
+        let Position { axes, frame, doubt } = position(*line, names, &is_free)?;
         let is_free = |column: &usize| is_free(*column) && !axes.contains(column);
-        let (radius, radius_factor) = RADIUS
+        let named = |list| {
+            let is_it = move |column: &usize| names[*column].is_any(list) && is_free(column);
+            (0..names.len()).filter(is_it)
+        };
+        let radii: Vec<_> = RADIUS
             .iter()
-            .find_map(|(list, factor)| {
-                let is_it = |column: &usize| names[*column].is_any(list) && is_free(column);
-                Some(((0..names.len()).find(is_it)?, *factor))
-            })
-            .unzip();
-        let numbers = LINES.iter().filter_map(|name| {
-            (0..names.len()).find(|column| names[*column].is_any(&[name]) && is_free(column))
-        });
+            .flat_map(|(list, factor)| named(list).map(move |column| (column, *factor)))
+            .collect();
+        if let [(first, _), (second, _), ..] = radii[..] {
+            let [first, second] = [first, second].map(|column| shown(&names[column].written));
+            return fault(
+                *line,
+                format!("has '{first}' and '{second}', and both may be the radius"),
+            );
+        }
+        let (radius, radius_factor) = radii.first().copied().unzip();
+        let of_lists = |lists: &'static [&'static str]| {
+            lists.iter().filter_map(|name| named(std::slice::from_ref(name)).next())
+        };
         let mut columns = Self {
             axes,
             radius,
             radius_factor: radius_factor.unwrap_or(1.0),
             units: [None; 2],
             shape,
-            lines: if first == 0 { numbers.collect() } else { Vec::new() },
+            lines: if first == 0 { of_lists(&LINES).collect() } else { Vec::new() },
+            times: if first == 0 { of_lists(&TIMES).collect() } else { Vec::new() },
             defined: column("defined").filter(&is_free),
             frame,
+            doubts: doubt.into_iter().collect(),
             most: names.len(),
             has_heading: true,
             line: *line,
@@ -288,6 +307,66 @@ const LINES: [&str; 26] = [
     "segmentids",
     "segmentid",
     "segment",
+];
+
+/// The names of a column that may tell robots apart, or the times of one robot.
+const TIMES: [&str; 16] = [
+    "robot",
+    "robotid",
+    "id",
+    "config",
+    "configuration",
+    "pose",
+    "frame",
+    "step",
+    "timestep",
+    "sample",
+    "trial",
+    "run",
+    "time",
+    "timestamp",
+    "t",
+    "ms",
+];
+
+/// Stems of names with x, y, z that say that they are a position.
+const POSITION: [&str; 36] = [
+    "p",
+    "pos",
+    "position",
+    "posicion",
+    "posizione",
+    "point",
+    "points",
+    "pt",
+    "punkt",
+    "coord",
+    "coords",
+    "coordinate",
+    "coordinates",
+    "koordinate",
+    "koordinaten",
+    "coordonnee",
+    "coordonn\u{e9}e",
+    "coordenada",
+    "coordinata",
+    "t",
+    "trans",
+    "translation",
+    "c",
+    "center",
+    "centre",
+    "loc",
+    "location",
+    "tip",
+    "base",
+    "marker",
+    "sensor",
+    "node",
+    "vertex",
+    "xyz",
+    "ras",
+    "lps",
 ];
 
 /// Stems of names with x, y, z that are no position: rotations, quaternions, directions,
@@ -401,6 +480,10 @@ impl Triple {
         Some([x, y, z])
     }
 
+    fn bare_stem(&self) -> String {
+        self.stem.replace('_', "")
+    }
+
     fn frame(&self) -> Option<Frame> {
         match (self.letters, self.stem.as_str()) {
             (RAS, _) | (_, "ras") => Some(Frame::Ras),
@@ -462,19 +545,28 @@ pub fn has_coordinates(names: &[Name]) -> bool {
     !triples(names, &|_| true).is_empty()
 }
 
-/// Returns the columns of the position, and the frame that their names state.
+/// The columns of the position.
+struct Position {
+    axes: [usize; 3],
+    /// The frame that their names state.
+    frame: Option<Frame>,
+    /// That the names do not say what they are.
+    doubt: Option<String>,
+}
+
+/// Returns the columns of the position.
 fn position(
     line: usize,
     names: &[Name],
     is_free: &dyn Fn(usize) -> bool,
-) -> Result<([usize; 3], Option<Frame>), Fault> {
+) -> Result<Position, Fault> {
     let triples = triples(names, is_free);
     let exact: Vec<_> = triples.iter().filter(|triple| triple.is_exact()).collect();
     // A column of t is a torque beside forces, and a translation otherwise.
     let has_forces = triples.iter().any(|triple| triple.stem == "f");
     let may_be = |triple: &&Triple| {
         let is_torque = has_forces && triple.stem == "t";
-        !is_torque && !NO_POSITION.contains(&triple.stem.replace('_', "").as_str())
+        !is_torque && !NO_POSITION.contains(&triple.bare_stem().as_str())
     };
     let candidates = if exact.is_empty() { triples.iter().filter(may_be).collect() } else { exact };
     let written = |triple: &Triple| {
@@ -483,8 +575,16 @@ fn position(
     };
     match candidates[..] {
         [triple] if !triple.is_twice => {
-            let columns = triple.columns().unwrap_or_default();
-            Ok((columns, triple.frame()))
+            let axes = triple.columns().unwrap_or_default();
+            let is_known = triple.is_exact() || POSITION.contains(&triple.bare_stem().as_str());
+            let doubt = (!is_known).then(|| {
+                let [x, y, z] = axes.map(|column| shown(&names[column].written));
+                format!(
+                    "'{x}', '{y}' and '{z}' are read as the position, but their names do not say \
+                     what they are; name the position x, y and z"
+                )
+            });
+            Ok(Position { axes, frame: triple.frame(), doubt })
         }
         [triple] => {
             let (name, _) = written(triple);

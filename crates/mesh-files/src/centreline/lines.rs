@@ -19,6 +19,8 @@ pub struct Centreline {
     pub states_unit: bool,
     /// The number of points that are left out because they have no position yet.
     pub skipped_points: usize,
+    /// What looks like a mistake, though the file is valid: one sentence each, without a full stop.
+    pub doubts: Vec<String>,
 }
 
 /// A line of a file.

@@ -12,6 +12,7 @@ pub mod vtk_legacy;
 pub mod vtk_xml;
 mod xml;
 
+use crate::doubts::sharp_turns;
 use crate::mesh::Mesh;
 use crate::{MeshFileError, Options, read_file, text};
 use format::Format;
@@ -101,14 +102,18 @@ pub fn centreline_from_bytes(
     }
     let Line { mut points, skipped_points, .. } = lines.swap_remove(line);
     options.scale_all(&file, &mut points)?;
-    with_points(file, Centreline { points, radii: None, frame, states_unit, skipped_points })
+    let (radii, doubts) = (None, Vec::new());
+    with_points(file, Centreline { points, radii, frame, states_unit, skipped_points, doubts })
 }
 
 /// Returns a centreline if it has at least two points.
-fn with_points(file: PathBuf, line: Centreline) -> Result<Centreline, MeshFileError> {
+fn with_points(file: PathBuf, mut line: Centreline) -> Result<Centreline, MeshFileError> {
     match line.points.len() {
         count @ ..2 => Err(MeshFileError::TooFewPoints { file, count }),
-        _ => Ok(line),
+        _ => {
+            line.doubts.extend(sharp_turns(&line.points));
+            Ok(line)
+        }
     }
 }
 

@@ -3,14 +3,17 @@
 //! # Several lines in a file
 //! The points of a centreline's file are split
 //! 1. by the first column that numbers lines, if two numbers occur, and one of them twice;
-//! 2. at empty lines and repeated headings, unless each part is one point;
-//! 3. at a step back: a point that repeats an earlier one, after a step of more than twice the mean
+//! 2. by the first column of robots or times, if two occur, and each of them twice on average: the
+//!    times of single points are no lines;
+//! 3. at empty lines and repeated headings, unless each part is one point;
+//! 4. at a step back: a point that repeats an earlier one, after a step of more than twice the mean
 //!    step since. No robot returns to its own point by such a step, but the next branch of a tree
 //!    begins where an earlier one does.
 
 use super::format::Format;
 use super::heading::{Columns, Fault, Heading, Name, fault, has_coordinates, is_units, names};
 use super::lines::Centreline;
+use crate::doubts::sharp_turns;
 use crate::text::{from_utf16, lines, shown};
 use crate::{Frame, MeshFileError, Options, read_file};
 use std::collections::{HashMap, HashSet};
@@ -98,11 +101,20 @@ pub fn load_shapes(
     options.check_scale()?;
     let Table { columns, rows, .. } = read(path, &read_file(path, options)?, 1, SHAPES, options)?;
     let robots = rows.chunk_by(|a, b| a.shape.to_bits() == b.shape.to_bits());
+    let mut numbers = HashSet::new();
     let shapes = robots.map(|rows| {
         let mut line = columns.centreline(rows, options.scale)?;
         // Points that are not finite are left to the robot's constructor: one bad shape does not
         // fail the others.
         line.points.iter_mut().flatten().for_each(|x| *x *= options.scale);
+        line.doubts.extend(sharp_turns(&line.points));
+        if !numbers.insert(rows[0].shape.to_bits()) {
+            line.doubts.push(format!(
+                "line {} begins a shape whose number stands before another shape too; each of \
+                 them is read as a robot of its own",
+                rows[0].line
+            ));
+        }
         Ok((rows[0].shape, line))
     });
     shapes.collect::<Result<_, Fault>>().map_err(|fault| fault.named(path, SHAPES))
@@ -117,6 +129,7 @@ pub fn centrelines(
     let mut table = read(path, bytes, 0, POINTS, options)?;
     let ends = table.split();
     let starts = [0].into_iter().chain(ends.iter().copied());
+    table.columns.doubts.extend(table.counts_lines());
     let lines = starts
         .zip(&ends)
         .map(|(start, &end)| table.columns.centreline(&table.rows[start..end], options.scale));
@@ -151,7 +164,7 @@ fn read(
 struct Table {
     columns: Columns,
     rows: Vec<Row>,
-    /// Numbers for the words in each of `columns.lines`, row by row.
+    /// Numbers for the words in each of `columns.lines` and `columns.times`, row by row.
     words: Vec<u32>,
 }
 
@@ -230,7 +243,7 @@ fn parse(bytes: &[u8], first: usize) -> Result<Option<Table>, Fault> {
         part += u32::from(std::mem::take(&mut is_apart) && !table.rows.is_empty());
         let row = table.columns.row(line, &words)?;
         table.rows.push(Row { part, ..row });
-        for &column in &table.columns.lines {
+        for &column in table.columns.lines.iter().chain(&table.columns.times) {
             let next = known.len() as u32;
             let word = words.get(column).copied().unwrap_or_default().to_owned();
             table.words.push(*known.entry((column, word)).or_insert(next));
@@ -297,6 +310,7 @@ impl Columns {
             frame: self.frame,
             states_unit: self.states_unit(),
             skipped_points: rows.len() - set().count(),
+            doubts: self.doubts.clone(),
         })
     }
 }
@@ -322,14 +336,33 @@ fn radii(rows: &[&Row]) -> Result<Option<Vec<f64>>, Fault> {
 }
 
 impl Table {
+    /// Returns a doubt if the first of four columns without a heading counts the lines, so that z
+    /// is read as the radius. A straight robot of constant radius may have such an x.
+    fn counts_lines(&self) -> Option<String> {
+        let Self { columns, rows, .. } = self;
+        let first = rows.first().filter(|_| !columns.has_heading && rows.len() > 2)?;
+        let counts = [0.0, 1.0].contains(&first.point[0])
+            && rows.windows(2).all(|pair| pair[1].point[0] - pair[0].point[0] == 1.0)
+            && rows.windows(2).any(|pair| pair[0].radius != pair[1].radius);
+        counts.then(|| {
+            format!(
+                "the first column counts the lines, but the columns are read as {POINTS}; leave \
+                 out the numbers, or write a heading"
+            )
+        })
+    }
+
     /// Sorts the rows by the lines of the file. Returns the end of each line.
     fn split(&mut self) -> Vec<usize> {
         let count = self.rows.len();
         let is_number = |different: usize| (2..count).contains(&different);
-        let each = self.columns.lines.len();
+        let (lines, each) =
+            (self.columns.lines.len(), self.columns.lines.len() + self.columns.times.len());
         let numbers = (0..each).find_map(|column| {
             let own = || self.words.iter().skip(column).step_by(each);
-            is_number(own().collect::<HashSet<_>>().len())
+            let different = own().collect::<HashSet<_>>().len();
+            let is_time = column >= lines;
+            (is_number(different) && !(is_time && 2 * different > count))
                 .then(|| own().copied().collect::<Vec<_>>())
         });
         let has_parts = self.rows.last().is_some_and(|row| is_number(row.part as usize + 1));

@@ -1,6 +1,9 @@
 //! A robot that is in another frame or unit than the mesh is doubted, with the change that helps.
 
-use mesh_files::{Bounds, Change, RadiusDoubt, misfits, radius_doubt, scales_radius};
+use crate::mutations::Draws;
+use mesh_files::{
+    Bounds, Change, RadiusDoubt, margin_doubt, misfits, radius_doubt, scales_radius, sharp_turns,
+};
 
 /// A mesh between these corners.
 const MESH: Bounds = Bounds { low: [-60.0, 20.0, 100.0], high: [-20.0, 90.0, 150.0] };
@@ -123,4 +126,64 @@ fn huge_numbers_stay_short() {
     let doubts = misfits(robot, &MESH, true).doubts;
     assert!(doubts.iter().all(|doubt| doubt.len() < 120), "{doubts:?}");
     assert!(radius_doubt(1e300, &MESH).unwrap().doubt.len() < 120);
+}
+
+#[test]
+fn margins_of_another_unit_are_doubted() {
+    // The mesh measures 94.868.
+    for margin in [0.0, 0.01, 0.5, 2.0, 50.0] {
+        assert_eq!(margin_doubt(margin, &MESH), None);
+    }
+    let expected = "the margin 0.002 is small beside the mesh's box, which measures 94.868; check \
+                    its unit";
+    assert_eq!(margin_doubt(0.002, &MESH).as_deref(), Some(expected));
+}
+
+#[test]
+fn points_out_of_order_are_doubted_and_bends_are_not() {
+    let mut draws = Draws(23);
+    let mut draw = || draws.below(1 << 20) as f64 / f64::from(1 << 20);
+    let mut found = [0; 2];
+    for round in 0..400 {
+        let scale = 2_f64.powi([-300, 0, 300][round % 3]);
+        // An arc whose steps turn by at most 80 degrees, about any axis.
+        let (turn, count) = (draw() * 1.39, 4 + round % 20);
+        let tilt = draw() * std::f64::consts::PI;
+        let point = |k: usize| {
+            let (sin, cos) = (turn * k as f64).sin_cos();
+            [sin, (1.0 - cos) * tilt.cos(), (1.0 - cos) * tilt.sin()].map(|x| x * scale)
+        };
+        let mut points: Vec<_> = (0..count).map(point).collect();
+        assert_eq!(sharp_turns(&points), None, "{round}");
+        // A point that is repeated, exactly or within the rounding of single precision.
+        let again = points[1].map(|x| if round % 2 == 0 { x } else { f64::from(x as f32) });
+        if scale == 1.0 {
+            points.insert(2, again);
+            assert_eq!(sharp_turns(&points), None, "{round}");
+            points.remove(2);
+        }
+        // One point far away, and the points of two robots.
+        let far = points[count / 2].map(|x| x + 10.0 * scale);
+        let joined = [&points[..], &points].concat();
+        points[count / 2] = far;
+        found[0] += usize::from(sharp_turns(&points).is_some());
+        // The way back from the end of less than half a turn.
+        let is_short = turn * count as f64 <= 3.0;
+        found[1] += usize::from(is_short && sharp_turns(&joined).is_some());
+        assert!(!is_short || sharp_turns(&joined).is_some(), "{round}");
+    }
+    assert!(found[0] == 400 && found[1] > 60, "{found:?}");
+    let zigzag = [[0.0; 3], [5.0, 0.0, 0.0], [0.0, 1.0, 0.0], [5.0, 2.0, 0.0]];
+    let expected = "the robot turns by more than 90 degrees at point 1, and at 1 other points; \
+                    check the order of the points, and whether they are of one robot";
+    assert_eq!(sharp_turns(&zigzag).as_deref(), Some(expected));
+    // A right angle is none. Points at one place have no direction.
+    for points in [
+        &[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]][..],
+        &[[0.0; 3]; 4],
+        &[],
+        &[[0.0; 3], [f64::NAN; 3], [1.0; 3]],
+    ] {
+        assert_eq!(sharp_turns(points), None);
+    }
 }

@@ -250,6 +250,100 @@ fn branches_are_lines_of_their_own() {
 }
 
 #[test]
+fn robots_and_times_are_told_apart_and_times_of_points_are_not() {
+    let rows = |name: &str, value: &dyn Fn(usize) -> String| {
+        let rows = (0..6).map(|row| format!("{},{},0,{}\n", value(row), row / 3, row % 3));
+        format!("{name},x,y,z\n{}", rows.collect::<String>())
+    };
+    for name in ["id", "robot", "Robot ID", "time", "time (s)", "step", "t"] {
+        // Two robots of three points, one after the other and in turn.
+        let two = rows(name, &|row| format!("0.{}", row / 3));
+        refused(name, read(&two), "holds 2 lines; choose one from 0 to 1");
+        let turns = rows(name, &|row| format!("0.{}", row % 2));
+        refused(name, read(&turns), "holds 2 lines; choose one from 0 to 1");
+        // A number for each point, a clock that ticks seldom, and one value for all.
+        for per_line in [1, 6] {
+            let each = rows(name, &|row| (row / per_line).to_string());
+            assert_eq!(read(&each).unwrap().points.len(), 6, "{name}");
+        }
+        let coarse = rows(name, &|row| [0, 1, 1, 2, 3, 4][row].to_string());
+        assert_eq!(read(&coarse).unwrap().points.len(), 6, "{name}");
+    }
+}
+
+#[test]
+fn two_columns_of_radii_are_refused() {
+    for (heading, first, second) in [
+        ("x,y,z,radius,radius", "radius", "radius"),
+        ("x,y,z,radius,diameter", "radius", "diameter"),
+        ("x,y,z,diameter (mm),r", "r", "diameter (mm)"),
+        ("OD,x,y,z,outer diameter", "OD", "outer diameter"),
+    ] {
+        let text = format!("{heading}\n0,0,0,1,2\n0,0,1,1,2\n");
+        let expected = format!("has '{first}' and '{second}', and both may be the radius");
+        refused(heading, read(&text), &expected);
+    }
+    // r is the first coordinate, and the radius of a vessel is none of the robot's.
+    let line = read("r,a,s,radius,MaximumInscribedSphereRadius\n0,0,0,1,9\n0,0,1,1,9\n").unwrap();
+    assert_eq!(line.radii, Some(vec![1.0]));
+}
+
+#[test]
+fn a_position_whose_name_does_not_say_so_is_doubted() {
+    let doubts = |heading: &str| read(&format!("{heading}\n0,0,0\n0,0,1\n0,0,2\n")).unwrap().doubts;
+    for heading in ["foo_x,foo_y,foo_z", "magX,magY,magZ", "x_field,y_field,z_field"] {
+        let [x, y, z]: [&str; 3] = heading.split(',').collect::<Vec<_>>().try_into().unwrap();
+        let expected = format!("'{x}', '{y}' and '{z}' are read as the position, but their names");
+        let [found] = &doubts(heading)[..] else { panic!("{heading}") };
+        assert!(found.starts_with(&expected), "{found}");
+    }
+    for heading in [
+        "x,y,z",
+        "X [mm],Y [mm],Z [mm]",
+        "r,a,s",
+        "pos_x,pos_y,pos_z",
+        "X position,Y position,Z position",
+        "X-Koordinate,Y-Koordinate,Z-Koordinate",
+        "Tx,Ty,Tz",
+        "Points:0,Points:1,Points:2",
+        "tip_x_mm,tip_y_mm,tip_z_mm",
+        "x_ras,y_ras,z_ras",
+    ] {
+        assert_eq!(doubts(heading), [""; 0], "{heading}");
+    }
+}
+
+#[test]
+fn numbers_of_lines_are_not_read_as_coordinates_in_silence() {
+    let rows = |row: &dyn Fn(usize) -> String| (0..5).map(row).collect::<String>();
+    for first in [0, 1] {
+        let counted = rows(&|k| format!("{},3.5,{},{}\n", k + first, 8 - k, 20 + k));
+        let [doubt] = &read(&counted).unwrap().doubts[..] else { panic!("{first}") };
+        assert!(doubt.starts_with("the first column counts the lines, but"), "{doubt}");
+    }
+    // A straight robot of constant radius, three columns, other steps, and a heading.
+    for plain in [
+        rows(&|k| format!("{k},3,8,2\n")),
+        rows(&|k| format!("{k},3,{}\n", 20 + k)),
+        rows(&|k| format!("{},3,0,{}\n", 2 * k, 20 + k)),
+        format!("x,y,z,radius\n{}", rows(&|k| format!("{k},3,0,{}\n", 20 + k))),
+    ] {
+        assert_eq!(read(&plain).unwrap().doubts, [""; 0], "{plain}");
+    }
+}
+
+#[test]
+fn a_shape_whose_number_comes_again_is_doubted() {
+    let file = std::env::temp_dir().join(format!("shapes-again-{}.csv", std::process::id()));
+    std::fs::write(&file, "0,0,0,0\n0,0,0,1\n1,0,0,0\n1,0,0,1\n0,0,0,2\n0,0,0,3\n").unwrap();
+    let shapes = mesh_files::load_shapes(&file, &Options::default()).unwrap();
+    std::fs::remove_file(&file).unwrap();
+    let doubts: Vec<_> = shapes.iter().map(|(_, shape)| shape.doubts.len()).collect();
+    assert_eq!(doubts, [0, 0, 1]);
+    assert!(shapes[2].1.doubts[0].starts_with("line 5 begins a shape whose number stands before"));
+}
+
+#[test]
 fn steps_back_are_found_in_any_frame_and_unit() {
     let mut draws = crate::mutations::Draws(11);
     let mut draw = || draws.below(1 << 20) as f64 / f64::from(1 << 20);

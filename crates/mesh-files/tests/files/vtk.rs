@@ -499,10 +499,12 @@ fn texts_have_radii_where_they_say_so() {
         (",Points_0,Points_1,Points_2,Radii\n0,0,0,0,2\n1,0,0,1,2\n", 2.0),
         ("x,y,z,Diameter (mm)\n0,0,0,2\n0,0,1,2\n", 1.0),
         ("r,a,s,diameter\n0,0,0,3\n0,0,1,3\n", 1.5),
-        ("x,y,z,diameter,radius\n0,0,0,3,1\n0,0,1,3,1\n", 1.0),
     ] {
         assert_eq!(radii(text), Ok((2, Some(vec![radius]))), "{text}");
     }
+    // They differ.
+    let both = radii("x,y,z,diameter,radius\n0,0,0,3,1\n0,0,1,3,1\n");
+    refused("both", both, "has 'radius' and 'diameter', and both may be the radius");
     refused("diameter", radii("x,y,z,diameter\n0,0,0,1\n0,0,1,-1\n"), "the radius of the last");
     let shapes = |text: &str| {
         let path = crate::file("shapes.csv", text.as_bytes());

@@ -1,10 +1,13 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
 //! mesh, a radius in another unit, or a mesh without an inside.
 
-use crate::input::{Block, Given, mesh_text};
+use crate::input::{Block, Given, mesh_text, of};
 use crate::mesh::Mesh;
 use crate::threads::{Asked, alone, compute};
-use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt, scales_radius};
+use mesh_files::{
+    Bounds, Change, Frame, RadiusDoubt, margin_doubt, misfits, radius_doubt, scales_radius,
+    sharp_turns,
+};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 
@@ -48,13 +51,16 @@ impl Mesh {
     /// There is a doubt if points and mesh state different frames, if the box of the points is a
     /// hundred times smaller or larger than the mesh's, if the two boxes do not overlap, or if the
     /// largest radius is not between 1/5000 and 1/10 of the diagonal of the mesh's box (0 is not
-    /// doubted). Each names what would help, if a change of frame or unit would. There are also the
-    /// doubts of `surface`: an open mesh, for example.
+    /// doubted). Each names what would help, if a change of frame or unit would. A margin is doubted
+    /// if it is less than 1/10,000 of that diagonal, and a robot if it turns by more than 90 degrees
+    /// at a point. There are also the doubts of `surface`: an open mesh, for example.
     ///
     /// Parameters
     /// ----------
     /// points, radii, pose
     ///     As for `distance`. The robots of a batch are in one box.
+    /// margin : float, optional
+    ///     As for `clears`.
     ///
     /// Returns
     /// -------
@@ -78,26 +84,32 @@ impl Mesh {
     /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
     /// >>> floor.doubts([[0, 0, 2], [40, 0, -2]], 2.5)
     /// ['the mesh is open: one opening 161 wide at (0, -30, 0); a robot may leave there without touching it']
-    #[pyo3(signature = (points, radii, *, pose = None))]
+    #[pyo3(signature = (points, radii, *, pose = None, margin = None))]
     fn doubts<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
     ) -> PyResult<Vec<String>> {
         let robots =
             crate::input::Robots::new(crate::input::Names::one("points"), points, radii, pose)?;
         let mut block = Block::default();
         robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
-        let (mut all, mut radius) = (Vec::new(), 0.0_f64);
+        let (mut all, mut radius, mut turns) = (Vec::new(), 0.0_f64, None);
         for place in 0..robots.len() {
             let robot: Given<'_> = block.robot(place);
             let placed = robot.pose();
             let pose = placed.map_err(|error| error.raise(py, robots.count.map(|_| place)))?;
             let radii = robot.radii.iter().copied().filter(|radius| radius.is_finite());
             radius = radii.fold(radius, f64::max);
+            let first = all.len();
             all.extend(robot.points.iter().map(|&point| (pose * point).to_array()));
+            turns = turns.or_else(|| {
+                let found = sharp_turns(&all[first..])?;
+                Some(robots.count.map_or(found.clone(), |_| format!("robot {place}: {found}")))
+            });
         }
         let frames = if pose.is_none() { self.frames(points)? } else { None };
         let (mesh, surface) = alone(py, &self.engine(py), |session| {
@@ -107,7 +119,11 @@ impl Mesh {
         })?;
         let may_turn = pose.is_none();
         let doubts = compute(py, || {
-            mesh.map(|mesh| doubts(&all, radius, &mesh, frames, may_turn)).unwrap_or_default()
+            let Some(mesh) = mesh else { return Vec::new() };
+            let mut doubts = doubts(&all, radius, &mesh, frames, may_turn);
+            doubts.extend(margin.and_then(|margin| margin_doubt(margin, &mesh)));
+            doubts.extend(turns);
+            doubts
         })?;
         Ok([doubts, surface].concat())
     }
