@@ -10,8 +10,8 @@
 // pointer that is NULL or misaligned, or a length that does not fit, is an error. Any other pointer
 // must point to as many items as its length says. The places of answers overlap neither each other
 // nor what the call reads. After an error they are undefined, except that the place of a new handle
-// is NULL, and that a batch has answered if `pc_error_robot` is not -1. A program ends if there is
-// no memory left.
+// is NULL, and that a batch has answered if it returns `PC_REFUSED` and `pc_error_robot` is not -1.
+// A program ends if there is no memory left.
 //
 // A handle may move from thread to thread. Functions that take it as const may run at the same time
 // in any number of threads; any other function needs it alone. `pc_mesh_clone` gives each thread a
@@ -530,10 +530,10 @@ pc_status pc_mesh_clears_batch(pc_mesh *mesh,
                                bool *clears,
                                pc_status *statuses);
 
-// The same for `count` robots of `section_count` sections of constant curvature each, on all cores.
-// A section is three numbers: its length, and its curvature towards x and towards y. All robots have
-// the same radii: one for each section, or a single one. A section becomes `segments` straight
-// links. All bases have the same `pose`.
+// The same for `count` robots of `section_count` sections of constant curvature each, on all
+// cores. A section is three numbers: its length, and its curvature towards x and towards y. All
+// robots have the same radii: one for each section, or a single one. A section becomes `segments`
+// straight links. All bases have the same `pose`.
 pc_status pc_mesh_clears_sections_batch(pc_mesh *mesh,
                                         const double *sections,
                                         size_t section_count,

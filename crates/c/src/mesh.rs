@@ -270,8 +270,8 @@ pub unsafe extern "C" fn pc_mesh_minimum_batch(
     minima: *mut pc_minimum,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count), minima: places(count),
-        statuses: places_or_none(count) =>
+    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count),
+        minima: places(count), statuses: places_or_none(count) =>
     {
         let robots = placed(robots.iter().map(|robot| &robot.chain), &poses);
         let mut found = Vec::new();
@@ -355,8 +355,8 @@ pub unsafe extern "C" fn pc_mesh_clears_batch(
     clears: *mut bool,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count), clears: places(count),
-        statuses: places_or_none(count) =>
+    border!(mesh: exclusive, robots: handles(count), poses: batch_poses(count),
+        clears: places(count), statuses: places_or_none(count) =>
     {
         let robots = placed(robots.iter().map(|robot| &robot.chain), &poses);
         let mut found = Vec::new();
@@ -365,10 +365,10 @@ pub unsafe extern "C" fn pc_mesh_clears_batch(
     })
 }
 
-/// The same for `count` robots of `section_count` sections of constant curvature each, on all cores.
-/// A section is three numbers: its length, and its curvature towards x and towards y. All robots have
-/// the same radii: one for each section, or a single one. A section becomes `segments` straight
-/// links. All bases have the same `pose`.
+/// The same for `count` robots of `section_count` sections of constant curvature each, on all
+/// cores. A section is three numbers: its length, and its curvature towards x and towards y. All
+/// robots have the same radii: one for each section, or a single one. A section becomes `segments`
+/// straight links. All bases have the same `pose`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_mesh_clears_sections_batch(
     mesh: *mut pc_mesh,
@@ -561,8 +561,8 @@ pub unsafe extern "C" fn pc_mesh_clears_tube_batch(
     decisions: *mut pc_decision,
     statuses: *mut pc_status,
 ) -> pc_status {
-    border!(mesh: exclusive, tubes: handles(count), poses: batch_poses(count), decisions: places(count),
-        statuses: places_or_none(count) =>
+    border!(mesh: exclusive, tubes: handles(count), poses: batch_poses(count),
+        decisions: places(count), statuses: places_or_none(count) =>
     {
         let tubes = placed(tubes.iter().map(|tube| &tube.tube), &poses);
         let mut found = Vec::new();
