@@ -4,12 +4,15 @@
 //! [`self_clears_tube`] and [`self_decides_motion`] answer; the module of [`RobotWithItself`]
 //! derives which pairs of parts count.
 
-use crate::answer::{Decision, ProximityError, RobotMotionAnswer, RobotProximity};
+use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
 use crate::curve::Tube;
 use crate::motion::Motion;
 use crate::query::motion::{MarginQuery, SelfMotionMemory, Sought, self_decides_motion};
-use crate::query::robots::{RobotWithItself, SelfMemory, SelfTubeMemory, self_clears_tube};
-use crate::query::{check_decision, check_margin};
+use crate::query::robots::{
+    BeyondMemory, RobotWithItself, SelfMemory, SelfTubeMemory, chain_clears, chain_minimum,
+    self_clears_tube, tube_clearance, tube_clears,
+};
+use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::Real;
 
@@ -28,6 +31,7 @@ pub struct SelfQuery {
     chain: SelfMemory,
     tube: SelfTubeMemory,
     motion: SelfMotionMemory,
+    beyond: BeyondMemory,
 }
 
 impl SelfQuery {
@@ -113,6 +117,152 @@ impl SelfQuery {
     pub fn clears(&mut self, robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
         check_margin(margin)?;
         Ok(RobotWithItself::new(robot, &mut self.chain)?.clears(margin, &mut self.chain))
+    }
+
+    /// Bounds the distance of a robot from itself between places at least `arc` apart along its
+    /// centreline. Returns `None` if the robot is shorter than `arc`.
+    ///
+    /// The distance is the least distance of two cross-sections whose arc lengths differ by at
+    /// least `arc`, a length. The cross-section of a place is the disc across the centreline. At a
+    /// joint the discs of both links count, at a step both radii. A round end of the robot, half a
+    /// ball, has the arc length of the end.
+    ///
+    /// - The distance is never more than `arc`, and exactly `arc` for a straight robot. So a margin
+    ///   of `arc` or more never clears.
+    /// - It does not depend on how straight links are cut. It changes continuously with the shape
+    ///   and `arc`, unless two joints are exactly `arc` apart: their discs turn from link to link.
+    /// - The wedge between the discs of a round joint, on its outside, does not count. It is within
+    ///   r sin(angle / 2) of the discs.
+    /// - No turn is required, and no joint is too sharp: [`minimum`](Self::minimum) has the local
+    ///   minima in place of a length.
+    ///
+    /// The bounds differ by rounding, except if a round end of the robot is exactly `arc` from the
+    /// nearest place: see [`resolved`](RobotClearance::resolved). `arc` is taken up to rounding. The
+    /// sections of the answer are links.
+    ///
+    /// # Errors
+    /// `arc` is negative or NaN.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::SelfQuery};
+    /// use parry_continuum::parry::math::Vector;
+    ///
+    /// let points = [0.0, 30.0, 60.0].map(|z| Vector::Z * z);
+    /// let straight = Chain::from_centreline(&points, &[1.5; 2])?;
+    /// let found = SelfQuery::new().minimum_beyond(&straight, 20.0)?.ok_or("too short")?;
+    /// assert!((found.lower - 20.0).abs() < 1e-9 && found.resolved);
+    /// assert_eq!(SelfQuery::new().minimum_beyond(&straight, 61.0)?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn minimum_beyond(
+        &mut self,
+        robot: &Chain,
+        arc: Real,
+    ) -> Result<Option<RobotClearance>, ProximityError> {
+        check_not_negative("arc", arc)?;
+        chain_minimum(robot, &mut self.beyond, arc)
+    }
+
+    /// Returns whether a robot provably keeps a margin to itself, between places at least `arc`
+    /// apart along its centreline.
+    ///
+    /// True if the lower bound of [`minimum_beyond`](Self::minimum_beyond) is more than `margin`,
+    /// or the robot is shorter than `arc`.
+    ///
+    /// # Errors
+    /// `arc` or the margin is negative or NaN.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::SelfQuery};
+    /// use parry_continuum::parry::math::Vector;
+    ///
+    /// // A hairpin whose legs are 8 apart, from surface to surface.
+    /// let points = [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [10.0, 0.0, 40.0], [10.0, 0.0, 0.0]];
+    /// let robot = Chain::from_centreline(&points.map(Vector::from_array), &[1.0; 3])?;
+    /// assert!(SelfQuery::new().clears_beyond(&robot, 20.0, 7.9)?);
+    /// assert!(!SelfQuery::new().clears_beyond(&robot, 20.0, 8.1)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clears_beyond(
+        &mut self,
+        robot: &Chain,
+        arc: Real,
+        margin: Real,
+    ) -> Result<bool, ProximityError> {
+        check_not_negative("arc", arc)?;
+        check_margin(margin)?;
+        Ok(chain_clears(robot, &mut self.beyond, [arc, margin])? == Decision::Clear)
+    }
+
+    /// Bounds the distance of a tube from itself between places at least `arc` apart along its
+    /// centreline. Returns `None` if the tube is shorter than `arc`.
+    ///
+    /// The distance is that of [`minimum_beyond`](Self::minimum_beyond), for the discs of the curve:
+    /// `lower` <= distance <= `upper`. `arc` and `tolerance` are lengths. The bounds differ by at
+    /// most the tolerance ([`resolved`](RobotClearance::resolved)), unless the samples do not allow
+    /// that or 65,536 pairs of pieces do not suffice.
+    ///
+    /// # Errors
+    /// - `arc` or the tolerance is negative or NaN.
+    /// - The tube has no section or is out of range, or its curve is not finite somewhere.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, parry::math::Vector, proximity::SelfQuery};
+    ///
+    /// // Half a circle of radius 20. Inner edges half a radian apart are 2 (20 - 1) sin(0.25) apart.
+    /// let angles = (0..=400).map(|k| std::f64::consts::PI * f64::from(k) / 400.0);
+    /// let points: Vec<_> =
+    ///     angles.map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 20.0).collect();
+    /// let tube = Tube::with_constant_radius(&points, 1.0, Some([Vector::Z, -Vector::Z]))?;
+    /// let found = SelfQuery::new().clearance_beyond(&tube, 10.0, 0.05)?.ok_or("too short")?;
+    /// assert!(found.lower <= 38.0 * 0.25_f64.sin() && found.upper >= 38.0 * 0.25_f64.sin() - 1e-3);
+    /// assert!(found.resolved);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clearance_beyond(
+        &mut self,
+        tube: &Tube,
+        arc: Real,
+        tolerance: Real,
+    ) -> Result<Option<RobotClearance>, ProximityError> {
+        check_not_negative("arc", arc)?;
+        check_not_negative("tolerance", tolerance)?;
+        tube_clearance(tube, &mut self.beyond, arc, tolerance)
+    }
+
+    /// Decides whether a tube is farther than `margin` from itself, between places at least `arc`
+    /// apart along its centreline.
+    ///
+    /// The distance is that of [`clearance_beyond`](Self::clearance_beyond); a tube shorter than
+    /// `arc` is `Clear`. `Clear` and `Contact` are proven. `Undecided` occurs if the distance is
+    /// within `resolution` of the margin, if the samples are too few or state errors, or if 65,536
+    /// pairs of pieces do not decide.
+    ///
+    /// # Errors
+    /// As [`clearance_beyond`](Self::clearance_beyond), or the margin or the resolution is negative
+    /// or NaN.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, Tube, parry::math::Vector};
+    /// use parry_continuum::proximity::{Decision, SelfQuery};
+    ///
+    /// let straight = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 50.0], &[1.0])?;
+    /// let tube = Tube::from(&straight);
+    /// let mut itself = SelfQuery::new();
+    /// assert_eq!(itself.clears_tube_beyond(&tube, 10.0, 9.9, 1e-3)?, Decision::Clear);
+    /// assert_eq!(itself.clears_tube_beyond(&tube, 10.0, 10.1, 1e-3)?, Decision::Contact);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clears_tube_beyond(
+        &mut self,
+        tube: &Tube,
+        arc: Real,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<Decision, ProximityError> {
+        check_not_negative("arc", arc)?;
+        check_decision(margin, resolution)?;
+        tube_clears(tube, &mut self.beyond, [arc, margin], resolution)
     }
 
     /// Decides whether a tube is farther than `margin` from itself.

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod allocations;
+mod beyond_arc;
 mod certify;
 mod certify_links;
 mod chain_cases;
