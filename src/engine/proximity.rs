@@ -157,17 +157,17 @@ pub trait Proximity: Engine {
     ///
     /// # Prominence
     /// A rough wall has a contact at each of its bumps. The prominence of a contact is the rise of
-    /// the distance along the best path on the mesh to a nearer place. The prominence is infinite
-    /// if every such path leaves the margin. `prominence` is the least prominence of a reported
-    /// contact, in the mesh's unit. With 0 every local minimum is a contact. For a surface made of
-    /// voxels, the size of a voxel leaves a few contacts per link.
+    /// the distance along the best path on the mesh to a nearer contact that is reported and whose
+    /// normal is within 60 degrees. The prominence is infinite if every such path leaves the
+    /// margin. `prominence` is the least prominence of a reported contact, in the mesh's unit. With
+    /// 0 every local minimum is a contact. For a surface made of voxels, the size of a voxel leaves
+    /// a few contacts per link.
     ///
     /// The filter loses no wall at any prominence:
     ///
     /// - Each connected region of the wall within the margin keeps its nearest contact.
     /// - Contacts whose normals differ by more than 60 degrees are never merged. So both sides of a
-    ///   groove stay. The prominence counts only paths to a nearer kept contact whose normal is
-    ///   within 60 degrees.
+    ///   groove stay.
     /// - So each contact that is dropped is represented by a nearer one. That contact pushes the
     ///   link in a direction within 60 degrees.
     /// - A contact without a [`normal`](Contact::normal) stays.

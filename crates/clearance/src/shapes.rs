@@ -8,7 +8,7 @@ use crate::wall::Wall;
 use crate::{csv, messages, number, outputs, report};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{InsideAnswer, LinkProximity, Proximity, ProximityError, Side};
+use parry_continuum::proximity::{LinkProximity, Proximity, ProximityError, Side};
 use serde_json::json;
 use std::path::Path;
 
@@ -98,14 +98,8 @@ fn ask(robots: &[Robot], wall: &mut Wall, pose: &Pose, file: &Path) -> Result<Ve
     Ok(answers)
 }
 
-/// Returns whether every link is inside.
+/// Returns whether every link is inside, as for one shape.
 fn is_inside(chain: &Chain, wall: &mut Wall, pose: &Pose) -> Result<bool, ProximityError> {
-    let answer = wall.search.clears_inside(chain, pose, 0.0)?;
-    let InsideAnswer { base, tip, crosses_opening, clears, .. } = answer;
-    if answer.holds() || !clears || crosses_opening || [base, tip].contains(&Side::Outside) {
-        return Ok(answer.holds());
-    }
-    // An end is near an opening: the links between may be decided.
     let mut sides = Vec::new();
     wall.search.link_sides(chain, pose, &mut sides)?;
     Ok(sides.iter().all(|side| *side == Side::Inside))
