@@ -26,6 +26,8 @@ export class Scene {
   /** The closest points of robot and wall. */
   private pair?: [three.Vector3, three.Vector3];
   private wall?: three.Mesh;
+  /** The radius around the wall's centre that has been in view. */
+  private inView = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: true });
@@ -57,13 +59,27 @@ export class Scene {
     this.wall = new three.Mesh(geometry, material);
     this.scene.add(this.wall);
     geometry.computeBoundingSphere();
-    const { center, radius } = geometry.boundingSphere!;
+    this.lookAt(geometry.boundingSphere!, new three.Vector3(1, -1.6, 0.9));
+  }
+
+  /** Shows all of a sphere from a direction. */
+  private lookAt({ center, radius }: three.Sphere, from: three.Vector3) {
+    this.inView = radius;
     this.controls.target.copy(center);
-    this.camera.position.copy(center).add(new three.Vector3(1, -1.6, 0.9).setLength(radius * 3));
+    this.camera.position.copy(center).add(from.setLength(radius * 3));
     this.camera.near = radius / 100;
     this.camera.far = radius * 20;
     this.camera.updateProjectionMatrix();
     this.controls.update();
+  }
+
+  /** Moves back if the robot has left the wall so far that it is out of view. */
+  private keepInView(points: three.Vector3[]) {
+    if (!this.wall) return;
+    const { center } = this.wall.geometry.boundingSphere!;
+    const radius = Math.max(...points.map((point) => point.distanceTo(center)));
+    if (radius <= this.inView) return;
+    this.lookAt(new three.Sphere(center, radius), this.camera.position.clone().sub(this.controls.target));
   }
 
   hideWall() {
@@ -97,6 +113,7 @@ export class Scene {
       place(radii[link]! * (1 + OUTLINE), new three.MeshBasicMaterial(dark));
       if (distance <= margin) this.line(point(onRobot, link), point(onMesh, link), RED, 2, NEAR);
     });
+    this.keepInView(Array.from({ length: 2 * distances.length }, (_, k) => point(ends, k)));
     const [from, to] = [point(onRobot, answers.closest()), point(onMesh, answers.closest())];
     this.pair = [from, to];
     this.line(from, to, "#ffffff", 7, HALO);
