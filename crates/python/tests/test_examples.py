@@ -82,6 +82,23 @@ def test_picture() -> None:
     assert Path("clearance.png").stat().st_size > 1000 and distance.shape == (200, 39)
 
 
+def test_slices() -> None:
+    distance = example("slices", "matplotlib", "nibabel").main("slices.png")
+    # The narrow lumen, less the catheter that is 1 mm beside its axis, within a voxel's diagonal.
+    assert Path("slices.png").stat().st_size > 1000 and abs(distance - (6.3 - 1 - 1)) < 3**0.5
+
+
+def test_slices_cut_triangles_and_robots() -> None:
+    slices = example("slices", "matplotlib", "nibabel")
+    # A plane cuts one of two triangles, at the middles of two edges.
+    vertices = np.array([[0.0, 0, 0], [2, 0, 2], [0, 2, 2], [9, 9, 9]])
+    segments = slices.cut(vertices, np.array([[0, 1, 2], [1, 2, 3]]), 2, 1.0)
+    assert np.allclose(np.sort(segments, axis=1), [[[0, 0, 1], [1, 1, 1]]])
+    bent = np.array([[0.0, 0, 0], [4, 0, 0], [4, 4, 0]])
+    places = np.array([[1, 0.5, 0], [4.5, 3, 0], [1, 2, 0]])
+    assert np.array_equal(slices.in_robot(places, bent, 1.0), [0, 1, np.nan], equal_nan=True)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of the cluster differ")
 def test_dask() -> None:
     example("dask_blocks", "distributed").main(20_000)  # compares with this process
