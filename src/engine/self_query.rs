@@ -137,8 +137,8 @@ impl SelfQuery {
     ///   minima in place of a length.
     ///
     /// The bounds differ by rounding, except if a round end of the robot is exactly `arc` from the
-    /// nearest place: see [`resolved`](RobotClearance::resolved). `arc` is taken up to rounding. The
-    /// sections of the answer are links.
+    /// nearest place: see [`resolved`](RobotClearance::resolved). `arc` is taken up to rounding.
+    /// The sections of the answer are links.
     ///
     /// # Errors
     /// `arc` is negative or NaN.
@@ -197,8 +197,8 @@ impl SelfQuery {
     /// Bounds the distance of a tube from itself between places at least `arc` apart along its
     /// centreline. Returns `None` if the tube is shorter than `arc`.
     ///
-    /// The distance is that of [`minimum_beyond`](Self::minimum_beyond), for the discs of the curve:
-    /// `lower` <= distance <= `upper`. `arc` and `tolerance` are lengths. The bounds differ by at
+    /// The distance is that of [`minimum_beyond`](Self::minimum_beyond), for the discs of the
+    /// curve: `lower` <= distance <= `upper`. `arc` and `tolerance` are lengths. The bounds differ by at
     /// most the tolerance ([`resolved`](RobotClearance::resolved)), unless the samples do not allow
     /// that or 65,536 pairs of pieces do not suffice.
     ///
@@ -209,14 +209,14 @@ impl SelfQuery {
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector, proximity::SelfQuery};
     ///
-    /// // Half a circle of radius 20. Inner edges half a radian apart are 2 (20 - 1) sin(0.25) apart.
+    /// // Half a circle of radius 20. Inner edges half a radian apart are 38 sin(0.25) apart.
     /// let angles = (0..=400).map(|k| std::f64::consts::PI * f64::from(k) / 400.0);
     /// let points: Vec<_> =
     ///     angles.map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 20.0).collect();
     /// let tube = Tube::with_constant_radius(&points, 1.0, Some([Vector::Z, -Vector::Z]))?;
     /// let found = SelfQuery::new().clearance_beyond(&tube, 10.0, 0.05)?.ok_or("too short")?;
-    /// assert!(found.lower <= 38.0 * 0.25_f64.sin() && found.upper >= 38.0 * 0.25_f64.sin() - 1e-3);
-    /// assert!(found.resolved);
+    /// let expected = 38.0 * 0.25_f64.sin();
+    /// assert!(found.lower <= expected && found.upper >= expected - 1e-3 && found.resolved);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn clearance_beyond(

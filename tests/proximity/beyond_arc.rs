@@ -1,5 +1,5 @@
-//! A robot and itself by arc length: the bounds beside dense samples of its cross-sections, and what
-//! follows from the definition.
+//! A robot and itself by arc length: the bounds beside dense samples of its cross-sections, and
+//! what follows from the definition.
 
 use continuum_testing::{Random, rounds};
 use parry_continuum::distance::{Vec3, disc_disc};

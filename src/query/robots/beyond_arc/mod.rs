@@ -29,8 +29,8 @@
 //!
 //! # Correctness
 //! Each pair of places belongs to a pair in the queue or to one whose lower bound was at least the
-//! least upper bound. So the smaller of that upper bound and the least lower bound of the queue is a
-//! lower bound on the distance.
+//! least upper bound. So the smaller of that upper bound and the least lower bound of the queue is
+//! a lower bound on the distance.
 //!
 //! **Rounding.** `arc` is reduced by `arc_slack`, which admits all pairs of places. `slack` covers
 //! all other rounding and the change of the distance by `arc_slack`.

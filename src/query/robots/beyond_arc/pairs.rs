@@ -2,7 +2,7 @@
 //!
 //! # Definitions
 //! - Two parts with the places s in `[a, b]` and s' in `[a', b']`, and shares u, v in `[0, 1]`.
-//! - **Domain**: the polygon of all (u, v) with s' - s >= `arc`: the unit square, clipped by a line.
+//! - **Domain**: the polygon of all (u, v) with s' - s >= `arc`: the unit square clipped by a line.
 //! - D(u, v): the vector between both interpolations. It is affine, so its values over the domain
 //!   are the convex polygon around its values D_i at the corners.
 //! - n: any unit vector. `R(n)`: an upper bound on how far the discs of a part reach along n.
@@ -28,12 +28,12 @@
 //!    short as rounding, D has no direction.
 //!
 //! # Shortest D
-//! If the shortest D of the unit square is in the domain, it is the shortest. Otherwise the shortest
-//! is on the clipping line, because |D| is convex.
+//! If the shortest D of the unit square is in the domain, it is the shortest. Otherwise the
+//! shortest is on the clipping line, because |D| is convex.
 //!
 //! # Nearest discs on the clipping line
-//! Links are straight. So the set of all (q, p, p') with p and p' in the two discs at the place q of
-//! the line is convex, and the least distance f(q) of two discs is a convex function. Its slope is
+//! Links are straight. So the set of all (q, p, p') with p and p' in the two discs at the place q
+//! of the line is convex, and the least distance f(q) of two discs is a convex function. Its slope is
 //! <n, dD/dq> for the direction n between the nearest points. [`polish`] bisects by its sign.
 
 use super::parts::Part;

@@ -11,13 +11,13 @@
 //!
 //! # Bounds of a part
 //! 1. **Link.** off = spread = 0.
-//! 2. **Curve.** Linear interpolation in arc length errs by at most k l^2 / 8, and by at most l / 2.
+//! 2. **Curve.** Linear interpolation in arc length errs by at most k l^2 / 8, and at most l / 2.
 //!    Tangents of the part differ from their mean by at most k l / 2. The samples' arc lengths are
 //!    those of their polyline: the curve is longer by at most the factor `stretch`, which moves
 //!    places by at most (stretch - 1) l and changes d by at most stretch - 1. If the ends are known
 //!    up to e, off grows by e and d changes by at most 2 e / h.
-//! 3. **Two neighbouring parts** i, with `off_i`, `spread_i` and `d_i`. Both interpolations and that
-//!    of their union agree at the outer ends and differ at the middle by some vector m. Between
+//! 3. **Two neighbouring parts** i, with `off_i`, `spread_i` and `d_i`. Both interpolations and
+//!    that of their union agree at the outer ends and differ at the middle by some vector m. Between
 //!    they differ by a share of m. So off = max `off_i` + |m|, and
 //!    spread = max(`spread_i` + |d_i - d|).
 
@@ -163,8 +163,8 @@ impl Part {
     /// Returns an upper bound on the distance between a point of
     /// [`radius_towards`](Self::radius_towards) and the nearest point of the true cross-section.
     ///
-    /// **Proof.** The centre is off by at most `off`. Let w be the unit radius vector, perpendicular
-    /// to d, and t the true direction. |<w, t>| = |<w, t - d>| <= spread. The projection of w to
+    /// **Proof.** The centre is off by at most `off`. Let w be the unit radius vector,
+    /// perpendicular to d, and t the true direction. |<w, t>| = |<w, t - d>| <= spread. The projection of w to
     /// the true disc, made a unit vector again, is within sqrt(2) spread of w. If the spread is 1
     /// or more, the point is the centre.
     pub(super) fn error_of_radius(&self) -> Real {
