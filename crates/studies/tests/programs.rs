@@ -93,6 +93,12 @@ fn the_trade_is_measured_drawn_and_quoted() {
     }
     let front = table(&page, "| time | worst error | model |");
     assert_eq!(picture.matches(" within ").count(), front.len(), "{picture}");
+    // The picture again, from the table: the same series.
+    succeed(TRADEOFF, &["--only", "picture", "--out", "trade/docs"]);
+    let again = read("trade/docs/tradeoff.svg");
+    let marks = |svg: &str| svg.matches("<polygon").count();
+    let labels = |svg: &str| svg.matches(" within ").count();
+    assert_eq!(marks(&again) - labels(&again), marks(&picture) - labels(&picture), "{again}");
     assert_quoted("trade/docs/book/trade.md", "tradeoff", "**Take a `Tube`");
     assert_eq!(table(&read("trade/docs/book/trade.md"), "| error | free shape: `Tube` |").len(), 4);
 

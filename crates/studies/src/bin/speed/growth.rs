@@ -195,7 +195,7 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let (least, most) =
         ratios.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
     let title = format!(
-        "One query of 30 links: the search is {} to {} times as fast as parry",
+        "All distances of 30 cylinders in a ventricle: {} to {} times as fast as parry",
         number(least),
         number(most)
     );

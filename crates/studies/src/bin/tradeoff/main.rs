@@ -70,6 +70,8 @@ struct Options {
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Chapter {
     Motions,
+    /// The picture, from the table beside it
+    Picture,
 }
 
 const EDGES: u32 = 400;
@@ -97,6 +99,10 @@ fn measure(options: &Options) -> Result<(), String> {
     let robot = ctr::three_tubes();
 
     let file = out.join("TRADEOFF.md");
+    if options.only == Some(Chapter::Picture) {
+        let all = plot::from_table(&out.join("tradeoff_links.csv"))?;
+        return plot::draw(&all, &out.join("tradeoff.svg"));
+    }
     if options.only == Some(Chapter::Motions) {
         quote::check_chapter(motions::MARK, &file)?;
         let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;

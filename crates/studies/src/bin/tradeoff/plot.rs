@@ -5,6 +5,7 @@ use crate::subject::Model;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::fs;
 use std::path::Path;
 
 type Log = LogCoord<f64>;
@@ -12,8 +13,6 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Log, Log>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (1000, 680);
-/// The height of a label, in pixels.
-const LINE: i32 = 19;
 /// Of a series: what the legend calls it, its colour (Okabe and Ito) and its mark, which tells it
 /// from the others in grey too.
 type Style = (&'static str, RGBColor, fn((i32, i32), RGBColor) -> Polygon<(i32, i32)>);
@@ -22,10 +21,35 @@ const TUBE: Style = ("tube, warm start", RGBColor(213, 94, 0), diamond);
 const PARRY_CYLINDER: Style = ("parry's Cylinder", RGBColor(0, 114, 178), square);
 const PARRY_CAPSULE: Style = ("parry's Capsule", RGBColor(86, 180, 233), triangle);
 
+/// The ways to ask whose times `tradeoff_links.csv` has, in order.
+const WAYS: [&str; 4] = ["search, first time", AGAIN, "exhaustive, f32", "exhaustive, f64"];
+const AGAIN: &str = "search, again";
+
 /// Draws the combinations into an SVG file.
 pub fn draw(all: &[Combination], path: &Path) -> Result<(), String> {
     draw_file(all, path)
         .map_err(|error| format!("cannot draw {} ({error}); choose another --out", path.display()))
+}
+
+/// Returns the combinations of `tradeoff_links.csv`.
+pub fn from_table(path: &Path) -> Result<Vec<Combination>, String> {
+    let rows = fs::read_to_string(path)
+        .map_err(|error| format!("cannot read {} ({error})", path.display()))?;
+    Ok(rows.lines().skip(1).filter_map(of_row).flatten().collect())
+}
+
+/// The combinations of a row, one for each way to ask that was timed.
+fn of_row(row: &str) -> Option<Vec<Combination>> {
+    let cells: Vec<_> = row.split(',').collect();
+    let [name, within, links, times @ .., _, over, under] = &cells[..] else { return None };
+    let model = Model::ALL.into_iter().find(|model| model.name() == *name)?;
+    let number = |cell: &str| cell.parse::<f64>().ok();
+    let (tolerance, links) = (number(within)?, links.parse().ok());
+    let error = number(over)?.abs().max(number(under)?.abs());
+    let timed = WAYS.into_iter().zip(times).filter_map(|(way, time)| {
+        Some(Combination { model, tolerance, links, way, time: number(time)? * 1e-6, error })
+    });
+    Some(timed.collect())
 }
 
 fn draw_file(all: &[Combination], path: &Path) -> Drawn {
@@ -34,14 +58,14 @@ fn draw_file(all: &[Combination], path: &Path) -> Drawn {
     // A logarithmic axis has no place for an error of 0.
     let all: Vec<_> = all.iter().filter(|one| one.error > 0.0).cloned().collect();
     let line = front(&all);
-    let of = |model: Model, way: &str| -> Vec<_> {
-        let is_of = |one: &&Combination| one.model == model && one.way == way;
+    let of = |model: Model, way: Option<&str>| -> Vec<_> {
+        let is_of = |one: &&Combination| one.model == model && way.is_none_or(|way| one.way == way);
         all.iter().filter(is_of).map(place).collect()
     };
     let series = [
-        (PARRY_CAPSULE, of(Model::ParryCapsule, "parry's search")),
-        (PARRY_CYLINDER, of(Model::ParryCylinder, "parry's search")),
-        (TUBE, of(Model::Tube, "search, again")),
+        (PARRY_CAPSULE, of(Model::ParryCapsule, None)),
+        (PARRY_CYLINDER, of(Model::ParryCylinder, None)),
+        (TUBE, of(Model::Tube, Some(AGAIN))),
         (FRONT, line.iter().map(place).collect()),
     ];
     if !line.is_empty() {
@@ -74,9 +98,9 @@ fn marks(
         .margin(16)
         .x_label_area_size(48)
         .y_label_area_size(72)
-        // Room for the legend below the points.
+        // Room for the labels on the left, and for the legend below the points.
         .build_cartesian_2d(
-            (fast * 0.6..slow * 1.8).log_scale(),
+            (fast * 0.35..slow * 1.8).log_scale(),
             (good * 0.2..bad * 2.0).log_scale(),
         )?;
     chart
@@ -84,10 +108,10 @@ fn marks(
         .x_desc("microseconds for the clearance of the whole robot (median)")
         .y_desc("worst error of the clearance, mm")
         .label_style(("sans-serif", 14))
-        .x_label_formatter(&|x| number(*x))
+        .x_labels(20)
+        .x_label_formatter(&|x| round_number(*x))
         .y_label_formatter(&|y| number(*y))
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.15))
+        .disable_mesh()
         .draw()?;
     // The front is a staircase: up to the next error, the faster combination serves.
     let mut corners: Vec<(f64, f64)> = Vec::new();
@@ -104,7 +128,7 @@ fn marks(
             .label(name)
             .legend(move |(x, y)| mark((x + 9, y), colour));
     }
-    labels(line, slow, &mut chart)?;
+    labels(line, &mut chart)?;
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::LowerLeft)
@@ -115,26 +139,14 @@ fn marks(
     Ok(())
 }
 
-/// Names the combinations of the front in a column between the front and the slowest points, each
-/// at the end of a line from its mark. Labels keep [`LINE`] between them.
-fn labels(line: &[Combination], slow: f64, chart: &mut Chart) -> Drawn {
-    let slowest = line.last().map_or(slow, |one| place(one).0);
-    let column = chart.backend_coord(&((slowest.powi(2) * slow).cbrt(), 1.0)).0;
-    let mut lowest = i32::MIN;
-    for one in line {
-        let at = place(one);
-        let (x, y) = chart.backend_coord(&at);
-        let height = y.max(lowest + LINE);
-        lowest = height;
-        let (across, down) = (column - x, height - y);
-        let name = one.model.name().replace(',', "");
-        let label = format!("{name} within {} mm", one.tolerance);
-        let place = Pos::new(HPos::Left, VPos::Center);
-        let style = ("sans-serif", 14).into_font().color(&BLACK).pos(place);
-        let lead = PathElement::new([(7, 0), (across - 5, down)], BLACK.mix(0.3).stroke_width(1));
-        chart
-            .draw_series([EmptyElement::at(at) + lead + Text::new(label, (across, down), style)])?;
-    }
+/// Names the combinations of the front, on the left of the staircase, where nothing else is.
+fn labels(line: &[Combination], chart: &mut Chart) -> Drawn {
+    let place_of_text = Pos::new(HPos::Right, VPos::Center);
+    let style = ("sans-serif", 14).into_font().color(&BLACK).pos(place_of_text);
+    chart.draw_series(line.iter().map(|one| {
+        let label = format!("{} within {} mm", one.model.name(), one.tolerance);
+        EmptyElement::at(place(one)) + Text::new(label, (-10, 0), style.clone())
+    }))?;
     Ok(())
 }
 
@@ -167,6 +179,13 @@ fn square(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
 
 fn triangle(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
     polygon(at, colour, 3, 0.0, 7.0)
+}
+
+/// 1, 2 or 5 times a power of ten; other ticks have no number.
+fn round_number(x: f64) -> String {
+    let mantissa = x / 10.0_f64.powf(x.log10().floor());
+    let is_round = [1.0, 2.0, 5.0, 10.0].iter().any(|round| (mantissa - round).abs() < 1e-9);
+    if is_round { number(x) } else { String::new() }
 }
 
 /// A number without needless digits.
