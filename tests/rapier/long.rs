@@ -163,7 +163,9 @@ impl Pile {
                     let at =
                         closest_points_segment_segment_with_locations(&Pose::IDENTITY, one, other);
                     let apart = (one.point_at(&at.0) - other.point_at(&at.1)).length();
-                    [index, number].map(|body| least[body] = least[body].min(apart));
+                    for body in [index, number] {
+                        least[body] = least[body].min(apart);
+                    }
                 }
             }
         }

@@ -213,9 +213,12 @@ impl Device {
         })
     }
 
-    /// The largest buffer that a kernel can use.
+    /// The largest buffer that a kernel can use, in bytes: a power of two, so that a size rounded up
+    /// to one still fits.
     pub fn largest_binding(&self) -> u64 {
-        self.limits().max_storage_buffer_binding_size.min(self.limits().max_buffer_size)
+        let limits = self.limits();
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        1 << most.max(1).ilog2()
     }
 
     /// Bytes from one uniform of a kind to the next in a buffer.

@@ -223,11 +223,8 @@ impl Measure<'_> {
         Some(links[candidate].answer(link as usize, &nearest))
     }
 
-    /// Whether every link is farther than the margin.
+    /// Whether every link is farther than the margin, if the device left that undecided.
     pub(super) fn clears(self, robot: &PlacedRobot, found: Found, margin: Real) -> bool {
-        if found.is_hit {
-            return false;
-        }
         // A few at a time, because the first within the margin decides.
         found.candidates.chunks(AT_ONCE).all(|candidates| {
             let links: Vec<_> = candidates.iter().map(|of| robot.link(of.link as usize)).collect();

@@ -54,16 +54,16 @@
 //! | the length of n and the division: 16 of a distance up to 3.5 | 56 | 56 |
 //! | minus r | 2 | 2 |
 //! | **sum** | 84 | 145 + 3.5 r / l |
-//! | **Upper:** q - p: 5 terms, magnitudes up to 10.4, each of 2 roundings | 62 | 62 |
+//! | **Upper:** q - p: 5 terms, magnitudes up to 10.4, each of 2 roundings | 63 | 63 |
 //! | its length: 12 of a distance up to 3.5 | 42 | - |
 //! | height over a cap: 7 of `2 sqrt(3)`; 22 for the axis, 13 for its length, of 3.5 | - | 147 |
-//! | distance from the axis' line: 102 of the height, 22 and 2 for its parts, 12 for its length | - | 231 |
+//! | distance from the axis' line: 102 of the height; 22 and 2 for parts, 13 for length | - | 232 |
 //! | both together (at most their sum), the root: 13 of 3.5 | - | 46 |
-//! | **sum** | 109 | 491 + 3.5 r / l |
-//! | **Box:** 9 terms, magnitudes `3 sqrt(3)`, each of 4 roundings | 62 | |
+//! | **sum** | 110 | 493 + 3.5 r / l |
+//! | **Box:** 9 terms, magnitudes `3 sqrt(3)`, each of 4 roundings | 63 | |
 //! | squares and division: 12 of 3.5, and the limit `(D + r + e)^2`: 3 of 3.5 | 53 | |
 //! | vertices and ends | 5 | |
-//! | **sum** | 120 | |
+//! | **sum** | 121 | |
 //!
 //! The comparisons with `D + e` and `D + r + e` round by 2 of 3.5, and the measured distance itself
 //! errs by less than 2^-20. The sums stay below 128 and `512 + 4 r / l`. Only the rounded ends turn

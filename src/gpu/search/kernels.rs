@@ -22,7 +22,8 @@ pub(super) const NOTHING: u32 = u32::MAX;
 
 /// Status of a link group: a link is certainly within the margin. (0 is no answer.)
 pub(super) const HIT: u32 = 1;
-/// Status: the candidates do not fit into the entries, or into [`MOST_GATHERED`].
+/// Status: the candidates do not fit into the entries, or into [`MOST_GATHERED`], or two visits
+/// counted them differently.
 pub(super) const FULL: u32 = 2;
 /// Status: the second pass gathers the candidates.
 const SECOND: u32 = 3;
