@@ -6,7 +6,7 @@ use crate::input::{
     object_of, shape_text, stated_frame, vectors,
 };
 use crate::motions::Motion;
-use crate::output::{array, flat, framed};
+use crate::output::{array, flat, framed, read_only};
 use crate::threads::{DeviceKind, Engine, Held, alone, interruptible, is_available};
 use crate::warning::warn;
 use mesh_files::Frame;
@@ -16,6 +16,7 @@ use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyString, PyTuple};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
@@ -79,6 +80,8 @@ pub(crate) struct Mesh {
     origin: Origin,
     /// Whether it has warned of points in another frame.
     has_warned: HasWarned,
+    /// Whether the orientation of its triangles has been looked at.
+    has_checked_sides: AtomicBool,
 }
 
 /// The frame and unit of a mesh, if known, and the number of faces left out of its file.
@@ -94,7 +97,8 @@ type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
     fn of(engine: Arc<Engine>, origin: Origin) -> Self {
-        Self { engine: Held::new(engine), origin, has_warned: HasWarned::default() }
+        let (has_warned, has_checked_sides) = Default::default();
+        Self { engine: Held::new(engine), origin, has_warned, has_checked_sides }
     }
 
     /// A new mesh with the given triangles.
@@ -126,9 +130,22 @@ impl Mesh {
 
     /// Warns of an open or badly joined surface. `name` is the file's.
     pub(crate) fn warn_of_surface(&self, py: Python<'_>, name: &str) -> PyResult<()> {
+        self.has_checked_sides.store(true, Ordering::Relaxed);
         let search = self.engine(py).base(py);
         let doubts = interruptible(py, move || search.surface().doubts())?;
         doubts.iter().try_for_each(|doubt| warn(py, &format!("{name}: {doubt}")))
+    }
+
+    /// Warns once before a question about sides if triangles face opposite ways.
+    pub(crate) fn note_sides(&self, py: Python<'_>) -> PyResult<()> {
+        if self.has_checked_sides.swap(true, Ordering::Relaxed) {
+            return Ok(());
+        }
+        let report = alone(py, &self.engine(py), |session| session.search.surface().clone())?;
+        if report.misoriented_edges == 0 {
+            return Ok(());
+        }
+        report.doubts().iter().try_for_each(|doubt| warn(py, doubt))
     }
 
     /// The engine of the mesh as it is now.
@@ -325,22 +342,23 @@ impl Mesh {
         self.origin.skipped_faces
     }
 
-    /// The vertices as they are now, a (V, 3) array of your own. It has the frame of the mesh.
+    /// The vertices as they are now, a (V, 3) array with the frame of the mesh. It is a copy that
+    /// cannot be written to: `set_vertices` moves the mesh.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let vertices = self.engine(py).vertices(py);
         let vertices = vertices.as_slice();
         let array = array(py, vec![vertices.len(), 3], flat(vertices.iter().copied()))?;
-        framed(array, self.frame())
+        framed(read_only(array)?, self.frame())
     }
 
-    /// The triangles, an (F, 3) array of int64 of your own.
+    /// The triangles, an (F, 3) array of int64. It is a copy that cannot be written to.
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
         let search = self.engine(py).base(py);
         let numbers: Vec<_> =
             search.triangles().as_flattened().iter().map(|&vertex| vertex.into()).collect();
-        array(py, vec![search.triangles().len(), 3], numbers)
+        read_only(array(py, vec![search.triangles().len(), 3], numbers)?)
     }
 
     /// Moves the vertices, in the order that they have.

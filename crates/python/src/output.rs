@@ -66,6 +66,14 @@ where
     }
 }
 
+/// An array that cannot be written to. A copy that could be would be taken for the mesh itself.
+pub(crate) fn read_only<T: Element>(
+    array: Bound<'_, PyArrayDyn<T>>,
+) -> PyResult<Bound<'_, PyArrayDyn<T>>> {
+    array.call_method1("setflags", (false,))?;
+    Ok(array)
+}
+
 /// The points with their frame, if it is known.
 pub(crate) fn framed<'py>(
     points: Bound<'py, PyArrayDyn<f64>>,

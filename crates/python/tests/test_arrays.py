@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from parry_continuum import ContinuumError, Mesh
-from shapes import robots, sphere
+from shapes import Array, robots, sphere
 
 MESH = Mesh(*sphere())
 ROBOTS = np.round(robots(np.random.default_rng(1), 20), 3)
@@ -73,9 +73,29 @@ def test_numbers_are_copied() -> None:
     before = MESH.distance(points, 0.1)
     points += 100
     assert_array_equal(before, MESH.distance(ROBOTS, 0.1))
-    vertices, _ = sphere()
-    MESH.vertices[:] = 0
-    assert_array_equal(MESH.vertices, vertices)
+    # A copy of the mesh's that could be written to would look like the mesh itself.
+    for numbers in (MESH.vertices, MESH.faces, Mesh(*sphere(), frame="RAS").vertices):
+        with pytest.raises(ValueError, match="read-only"):
+            numbers[:] = 0
+
+
+class Table:
+    """What a table of pandas has, as far as the package sees it."""
+
+    def __init__(self, columns: list[object], rows: Array) -> None:
+        self.columns, self._rows = columns, rows
+
+    def __array__(self, dtype: object = None, copy: object = None) -> Array:
+        return self._rows
+
+
+def test_columns_of_a_table_are_in_order() -> None:
+    for names in (["z", "y", "x"], ["Y", "X", "Z"], ["s", "a", "r"], ["p", "l", "s"]):
+        with pytest.raises(ContinuumError, match=f"has the columns {', '.join(names)}; give them in the order"):
+            MESH.distance(Table([*names], ROBOTS[0]), 0.1)
+    expected = MESH.distance(ROBOTS[0], 0.1)
+    for columns in (["x", "y", "z"], ["l", "p", "s"], [0, 1, 2], ["c", "b", "a"], ["x", 1, "z"]):
+        assert MESH.distance(Table(columns, ROBOTS[0]), 0.1) == expected
 
 
 def test_segments_without_length() -> None:

@@ -93,3 +93,24 @@ def test_sides_agree_on_all_cores() -> None:
     assert_array_equal(sides, np.stack([ball.link_sides(robot, 0.2) for robot in robots]))
     assert_array_equal(sides[free].astype(int), ball.side(robots[:, 1:])[free].astype(int))
     assert (sides[~free].astype(int) == 0).all() and 20 < free.sum() < free.size - 20
+
+
+def test_the_first_question_about_sides_warns_of_triangles_that_face_both_ways() -> None:
+    turned = FACES.copy()
+    turned[::2] = turned[::2, ::-1]
+    inside = LEAVES[:2]
+    for ask in (
+        lambda mesh: mesh.side(inside[0]),
+        lambda mesh: mesh.link_sides(inside, 1.0),
+        lambda mesh: mesh.clears_inside(inside, 1.0, margin=1),
+    ):
+        mesh = Mesh(CORNERS, turned)
+        with pytest.warns(UserWarning, match="edges whose triangles face opposite ways") as found:
+            ask(mesh)
+        assert len(found) == 1
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            ask(mesh)
+            # Faces that all look inward, and openings, which the answers themselves tell.
+            ask(Mesh(CORNERS, FACES[:, ::-1]))
+            ask(OPEN)

@@ -23,6 +23,7 @@ impl<'py> Numbers<'py> {
     pub(crate) fn new(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if given.cast_exact::<PyUntypedArray>().is_err() {
             refuse_masked(given, name)?;
+            refuse_misordered(given, name)?;
         }
         if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
@@ -135,6 +136,31 @@ pub(super) fn refuse_masked<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyRes
         "`{name}` is a masked array, and its mask would be lost; leave the masked rows out, or give `{name}.data` if they count"
     );
     Err(Refused::other("bad_type", text).raise(given.py(), None))
+}
+
+/// Refuses a table whose three columns are named x, y, z, or r, a, s, or l, p, s, in another order:
+/// numpy would drop the names.
+fn refuse_misordered(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    let is_table = given.cast::<PyUntypedArray>().is_err()
+        && given.cast::<PyList>().is_err()
+        && given.cast::<PyTuple>().is_err();
+    let columns = if is_table { given.getattr_opt("columns")? } else { None };
+    let names = columns.and_then(|columns| columns.try_iter().ok()).map(|columns| {
+        let text = |column: PyResult<Bound<'_, PyAny>>| column.ok()?.extract::<String>().ok();
+        columns.take(4).map_while(text).collect::<Vec<_>>()
+    });
+    let Some([a, b, c]) = names.as_deref() else { return Ok(()) };
+    let found = [a, b, c].map(|name| name.to_lowercase());
+    for axes in [["x", "y", "z"], ["r", "a", "s"], ["l", "p", "s"]] {
+        if found.iter().all(|name| axes.contains(&name.as_str())) && found != axes {
+            let [x, y, z] = axes;
+            let text = format!(
+                "`{name}` has the columns {a}, {b}, {c}; give them in the order {x}, {y}, {z}"
+            );
+            return Err(Refused::other("bad_type", text).raise(given.py(), None));
+        }
+    }
+    Ok(())
 }
 
 /// The most dimensions of an array of numpy: deeper lists are no array.

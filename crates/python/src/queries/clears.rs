@@ -125,6 +125,7 @@ impl Mesh {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
+        self.note_sides(py)?;
         let (mut clears, mut crosses) = (Vec::new(), Vec::new());
         let (mut bases, mut tips) = (Vec::new(), Vec::new());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [([bool; 2], [i8; 2])]| {

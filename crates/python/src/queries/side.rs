@@ -15,7 +15,8 @@ use pyo3::types::PyTuple;
 impl Mesh {
     /// On which side of the mesh points are, proven.
     ///
-    /// Triangles may face outward or inward, as long as all do the same. Near holes of an open
+    /// Triangles may face outward or inward, as long as all do the same: the first question about
+    /// sides warns if they do not. Near holes of an open
     /// mesh, and on triangles, the answer is ``Side.UNDECIDED``.
     ///
     /// Parameters
@@ -50,6 +51,7 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = Numbers::new(points, "points")?;
         self.note_frame("points", points)?;
+        self.note_sides(py)?;
         let Some((3, shape)) =
             numbers.shape().split_last().map(|(last, rest)| (*last, rest.to_vec()))
         else {
@@ -105,6 +107,7 @@ impl Mesh {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
+        self.note_sides(py)?;
         let segments = robots.segments_each();
         let mut all = Vec::with_capacity(robots.len() * segments);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
