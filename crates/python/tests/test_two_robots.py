@@ -279,3 +279,31 @@ def test_refused(ask: object, kind: str, text: str) -> None:
     with pytest.raises(ContinuumError, match=text) as raised:
         ask(robots(np.random.default_rng(0), 5))  # type: ignore[operator]
     assert raised.value.kind == kind
+
+
+def test_by_arc_length() -> None:
+    straight = np.stack([[k, 0.0, 0.0] for k in range(11)])
+    query = SelfQuery()
+    found = query.minimum_beyond(straight, RADIUS, arc=4.0)
+    assert abs(found.lower - 4) < 1e-9 and abs(found.upper - 4) < 1e-9 and found.resolved
+    assert abs(found.arc_lengths[1] - found.arc_lengths[0] - 4) < 1e-9
+    short = query.minimum_beyond(straight, RADIUS, arc=11.0)
+    assert short.lower == short.upper == np.inf and short.resolved and np.isnan(short.on_first).all()
+    # Inner edges of a circle of radius 5 at an arc of 4 are 2 (5 - RADIUS) sin(0.4) apart.
+    angle = np.linspace(0, 2, 200)
+    circle = 5 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    expected, ends = 2 * (5 - RADIUS) * np.sin(0.4), [[0, 1, 0], [-np.sin(2), np.cos(2), 0]]
+    chain = query.minimum_beyond(circle, RADIUS, arc=4.0)
+    tube = query.clearance_beyond(circle, RADIUS, arc=4.0, tolerance=0.05, tangents=ends)
+    assert abs(chain.upper - expected) < 5e-3 and tube.lower - 1e-3 <= expected <= tube.upper + 1e-3
+    both = query.minimum_beyond(np.stack([straight[:10], circle[:10]]), RADIUS, arc=4.0)
+    assert both.lower.shape == (2,) and both.on_first.shape == (2, 3) and np.isinf(both.lower[1])
+    for margin in (3.0, 3.9):
+        assert query.clears_beyond(circle, RADIUS, arc=4.0, margin=margin) is bool(margin < expected)
+        decided = query.clears_tube_beyond(
+            circle, RADIUS, arc=4.0, margin=margin, resolution=0.01, tangents=ends
+        )
+        assert decided == (Decision.CLEAR if margin < expected else Decision.CONTACT)
+    for arc in (-1.0, np.nan):
+        with pytest.raises(ContinuumError, match="arc"):
+            query.minimum_beyond(straight, RADIUS, arc=arc)

@@ -494,6 +494,35 @@ class SelfQuery:
         deviation: float = 0.0,
         turn: float | None = None,
     ) -> DecisionOrDecisions: ...
+    def minimum_beyond(
+        self, points: ArrayLike, radii: ArrayLike, *, arc: float, caps: _Caps = "fitted"
+    ) -> RobotClearance: ...
+    def clears_beyond(
+        self, points: ArrayLike, radii: ArrayLike, *, arc: float, margin: float, caps: _Caps = "fitted"
+    ) -> BoolOrBools: ...
+    def clearance_beyond(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        *,
+        arc: float,
+        tolerance: float,
+        tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
+        turn: float | None = None,
+    ) -> RobotClearance: ...
+    def clears_tube_beyond(
+        self,
+        points: ArrayLike,
+        radii: ArrayLike,
+        *,
+        arc: float,
+        margin: float,
+        resolution: float,
+        tangents: ArrayLike | None = None,
+        deviation: float = 0.0,
+        turn: float | None = None,
+    ) -> DecisionOrDecisions: ...
     def clears_motion(self, motion: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
 
 def gpu_available() -> bool: ...

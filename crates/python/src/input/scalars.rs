@@ -172,6 +172,7 @@ pub(crate) mod of {
     use pyo3::prelude::*;
 
     numbers!(
+        arc,
         deviation,
         deviation_a,
         deviation_b,

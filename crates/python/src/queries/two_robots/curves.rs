@@ -32,6 +32,40 @@ impl Session {
     }
 }
 
+/// Bounds of each question; of a robot without two such places they are infinite.
+pub(super) fn bounds<'py>(
+    py: Python<'py>,
+    robots: &Robots<'py>,
+    all: &[Result<Option<RobotClearance>, &'static str>],
+) -> PyResult<Bound<'py, PyAny>> {
+    let found = |it: &Result<Option<RobotClearance>, &'static str>| it.ok().flatten();
+    let numbers = |of: fn(&RobotClearance) -> f64, without: f64| {
+        let number = |it: &Result<Option<RobotClearance>, _>| match it {
+            Ok(found) => found.as_ref().map_or(without, of),
+            Err(_) => f64::NAN,
+        };
+        array_or_number(py, robots.shape(&[]), all.iter().map(number).collect())
+    };
+    let points = |of: fn(&RobotClearance) -> Vector| {
+        let points = all.iter().map(|it| found(it).as_ref().map_or(Vector::NAN, of));
+        array(py, robots.shape(&[3]), flat(points))
+    };
+    let lengths =
+        all.iter().flat_map(|it| found(it).map_or([f64::NAN; 2], |it| it.witness.arc_lengths));
+    let resolved = all.iter().map(|it| it.is_ok_and(|it| it.is_none_or(|it| it.resolved)));
+    let values = (
+        numbers(|found| found.lower, f64::INFINITY)?,
+        numbers(|found| found.upper, f64::INFINITY)?,
+        array_or_number(py, robots.shape(&[]), resolved.collect())?,
+        numbers(|found| found.uncertainty, 0.0)?,
+        points(|found| found.witness.on_first)?,
+        points(|found| found.witness.on_second)?,
+        array(py, robots.shape(&[2]), lengths.collect())?,
+        statuses(py, all, robots.count.is_some())?,
+    );
+    answer!(py, "RobotClearance", values)
+}
+
 impl Pairs {
     fn clearance<'py>(
         &self,
@@ -47,40 +81,8 @@ impl Pairs {
             })
         };
         let all = answer_each_or_kind(py, self, robots, ask)?;
-        let shape = || robots.shape(&[]);
-        let numbers = |of: fn(&RobotClearance) -> f64| {
-            array_or_number(
-                py,
-                shape(),
-                all.iter().map(|it| it.as_ref().map_or(f64::NAN, of)).collect(),
-            )
-        };
-        let points = |of: fn(&RobotClearance) -> Vector| {
-            array(
-                py,
-                robots.shape(&[3]),
-                flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))),
-            )
-        };
-        let lengths = all
-            .iter()
-            .flat_map(|it| it.as_ref().map_or([f64::NAN; 2], |it| it.witness.arc_lengths))
-            .collect();
-        let values = (
-            numbers(|found| found.lower)?,
-            numbers(|found| found.upper)?,
-            array_or_number(
-                py,
-                shape(),
-                all.iter().map(|it| it.as_ref().is_ok_and(|it| it.resolved)).collect(),
-            )?,
-            numbers(|found| found.uncertainty)?,
-            points(|found| found.witness.on_first)?,
-            points(|found| found.witness.on_second)?,
-            array(py, robots.shape(&[2]), lengths)?,
-            statuses(py, &all, robots.count.is_some())?,
-        );
-        answer!(py, "RobotClearance", values)
+        let all: Vec<_> = all.into_iter().map(|found| found.map(Some)).collect();
+        bounds(py, robots, &all)
     }
 
     fn clears_tubes<'py>(

@@ -1,14 +1,15 @@
 //! The class `SelfQuery`: queries about one robot and itself.
 
 use super::answers::{Row, proximities};
+use super::curves::bounds;
 use super::motions::motion_answers;
 use super::session::Sessions;
-use crate::input::{Caps, Given, Names, Robots, object_of, of};
+use crate::input::{Caps, Given, Names, Robots, check_length, object_of, of};
 use crate::motions::{Motion, Moving};
 use crate::output::{Enumeration, array_or_number, decision_value, members};
 use crate::queries::chains::set_chain;
 use crate::queries::clearance::{Stated, tube, tubes};
-use crate::threads::{Asked, answer_each, ask_each};
+use crate::threads::{Asked, answer_each, answer_each_or_kind, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::proximity;
 use pyo3::prelude::*;
@@ -224,6 +225,208 @@ impl SelfQuery {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let tube = tube(robot, stated)?;
             row[0] = decision_value(session.query.clears_tube(&tube, margin, resolution)?);
+            Ok(())
+        };
+        ask_each(py, &self.0, &robots, (0, 1), ask, |_, found| all.extend(found))?;
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
+    }
+
+    /// Bounds on the distance of a robot from itself, between places at least `arc` apart along it.
+    ///
+    /// The distance is the least distance of two cross-sections, the discs across the centreline. It
+    /// is never more than `arc`, and exactly `arc` if the robot is straight: choose `arc` larger
+    /// than any margin. A round end of the robot has the arc length of the end.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, caps
+    ///     As for `minimum`.
+    /// arc : float
+    ///     A length along the robot, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// RobotClearance
+    ///     The bounds differ by rounding, with few exceptions: see ``resolved``. If the robot is
+    ///     shorter than `arc`, they are infinite.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     `arc` is negative or NaN. Of one robot: points or radii are no robot.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import SelfQuery
+    /// >>> hook = [[0, 0, 0], [0, 0, 9], [2, 0, 11], [4, 0, 9], [4, 0, 0]]
+    /// >>> round(float(SelfQuery().minimum_beyond(hook, 0.5, arc=9.0).upper), 6)
+    /// 3.0
+    #[pyo3(signature = (points, radii, *, arc, caps = Caps::Fitted), text_signature = "($self, points, radii, *, arc, caps=\"fitted\")")]
+    fn minimum_beyond<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = of::arc)] arc: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check_length(py, "arc", arc)?;
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
+        let ask = |session: &mut Session, robot: &Given<'_>| {
+            let chain = set_chain(&mut session.chain, robot, caps)?;
+            Ok(session.query.minimum_beyond(chain, arc)?)
+        };
+        bounds(py, &robots, &answer_each_or_kind(py, &self.0, &robots, ask)?)
+    }
+
+    /// Whether a robot keeps more than a margin to itself, between places at least `arc` apart
+    /// along it.
+    ///
+    /// True if the lower bound of `minimum_beyond` is more than the margin.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, caps
+    ///     As for `minimum`.
+    /// arc : float
+    ///     A length along the robot, at least 0. A margin of `arc` or more is never kept.
+    /// margin : float
+    ///     A length, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// bool or (B,) array of bool
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     `arc` or the margin is negative or NaN, or points or radii are no robot.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import SelfQuery
+    /// >>> hook = [[0, 0, 0], [0, 0, 9], [2, 0, 11], [4, 0, 9], [4, 0, 0]]
+    /// >>> SelfQuery().clears_beyond(hook, 0.5, arc=9.0, margin=2.9)
+    /// True
+    #[pyo3(signature = (points, radii, *, arc, margin, caps = Caps::Fitted), text_signature = "($self, points, radii, *, arc, margin, caps=\"fitted\")")]
+    fn clears_beyond<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = of::arc)] arc: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
+        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
+            let chain = set_chain(&mut session.chain, robot, caps)?;
+            row[0] = session.query.clears_beyond(chain, arc, margin)?;
+            Ok(())
+        };
+        ask_each(py, &self.0, &robots, (false, 1), ask, |_, found| all.extend(found))?;
+        array_or_number(py, robots.shape(&[]), all)
+    }
+
+    /// Bounds on the distance of a curved tube from itself, between places at least `arc` apart
+    /// along it.
+    ///
+    /// As `minimum_beyond`, for the discs of the curve itself. Arc lengths are measured along the
+    /// lines between the points.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii
+    ///     As for `clears_tube`.
+    /// arc : float
+    ///     A length along the tube, at least 0.
+    /// tolerance : float
+    ///     How far apart the bounds may be, at least 0.
+    /// tangents, deviation, turn
+    ///     As for `Mesh.clearance`.
+    ///
+    /// Returns
+    /// -------
+    /// RobotClearance
+    ///     If the tube is shorter than `arc`, the bounds are infinite.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     `arc` or the tolerance is negative or NaN. Of one tube: points turn too sharply.
+    #[pyo3(signature = (points, radii, *, arc, tolerance, tangents = None, deviation = 0.0, turn = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn clearance_beyond<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = of::arc)] arc: f64,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
+        tangents: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check_length(py, "arc", arc)?;
+        check_length(py, "tolerance", tolerance)?;
+        let stated = Stated { deviation, turn };
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
+        let robots = tubes(robots, "tangents", tangents, stated)?;
+        let ask = |session: &mut Session, robot: &Given<'_>| {
+            Ok(session.query.clearance_beyond(&tube(robot, stated)?, arc, tolerance)?)
+        };
+        bounds(py, &robots, &answer_each_or_kind(py, &self.0, &robots, ask)?)
+    }
+
+    /// Whether a curved tube keeps more than a margin to itself, between places at least `arc`
+    /// apart along it.
+    ///
+    /// The distance is that of `clearance_beyond`.
+    ///
+    /// Parameters
+    /// ----------
+    /// points, radii, arc
+    ///     As for `clearance_beyond`.
+    /// margin : float
+    ///     A length, at least 0.
+    /// resolution : float
+    ///     The answer is undecided only if the distance is within this of the margin, the points do
+    ///     not allow a decision, or 65,536 pairs of pieces do not decide.
+    /// tangents, deviation, turn
+    ///     As for `Mesh.clearance`.
+    ///
+    /// Returns
+    /// -------
+    /// Decision or Decisions
+    ///     As of `Mesh.clears_tube`.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     `arc`, the margin or the resolution is negative or NaN, or points turn too sharply.
+    #[pyo3(signature = (points, radii, *, arc, margin, resolution, tangents = None, deviation = 0.0, turn = None))]
+    #[allow(clippy::too_many_arguments)] // they are named in Python
+    fn clears_tube_beyond<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = of::arc)] arc: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
+        tangents: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let stated = Stated { deviation, turn };
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
+        let robots = tubes(robots, "tangents", tangents, stated)?;
+        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
+            let tube = tube(robot, stated)?;
+            let found = session.query.clears_tube_beyond(&tube, arc, margin, resolution)?;
+            row[0] = decision_value(found);
             Ok(())
         };
         ask_each(py, &self.0, &robots, (0, 1), ask, |_, found| all.extend(found))?;
