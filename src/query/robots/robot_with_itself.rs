@@ -80,7 +80,7 @@ use parry3d_f64::math::{Pose, Real};
 /// With more rejected pairs the nodes of [`OwnFaces`] are cheaper.
 const MOST_REFUSED: usize = 64;
 
-/// The most moves from a rejected pair.
+/// The most moves from a rejected pair, counting those that lead nowhere nearer.
 const MOST_MOVES: u32 = 64;
 
 /// State and memory that the next query reuses.
@@ -182,35 +182,46 @@ impl<'a> RobotWithItself<'a> {
         one.counts_beside(&two, one.tolerance(&two))
     }
 
-    /// Moves from a rejected pair to nearer ones, one link at a time. Returns the last pair if it
-    /// counts. Of the rejected pairs, only the first, second, fourth and so on are moved.
+    /// Moves from a rejected pair to nearer ones. Returns the last pair if it counts. Of the
+    /// rejected pairs, only the first, second, fourth and so on are moved.
+    ///
+    /// A move changes one of the two links by `stride`. The stride doubles after each move and
+    /// halves if no move leads nearer, so a distance of n links takes about 2 log n moves.
     fn slide(
         &self,
         turns: &TurnSums,
-        mut nearest: RobotProximity,
+        found: RobotProximity,
         refused: usize,
     ) -> Option<RobotProximity> {
         if !refused.is_power_of_two() {
             return None;
         }
+        let gap = |[one, two]: [usize; 2]| {
+            let [one, two] = [self.robot.link(one), self.robot.link(two)];
+            one.nearest_on_axes(&two).1 - one.radius() - two.radius()
+        };
+        let is_queried = |[one, two]: &[usize; 2]| {
+            *two < turns.queried_from.len()
+                && turns.queried_from.get(*one).is_some_and(|from| from <= two)
+        };
+        let mut links = found.links.map(|link| link as usize);
+        let (mut nearest, mut stride) = (gap(links), 1);
         for _ in 0..MOST_MOVES {
-            let [one, two] = nearest.links.map(|link| link as usize);
-            let neighbours =
-                [[one.wrapping_sub(1), two], [one + 1, two], [one, two - 1], [one, two + 1]];
-            let is_queried = |[one, two]: &[usize; 2]| {
-                *two < turns.queried_from.len()
-                    && turns.queried_from.get(*one).is_some_and(|from| from <= two)
-            };
-            let measured = neighbours.into_iter().filter(is_queried);
-            let next = measured
-                .map(|links| measure_pair([&self.robot; 2], links))
-                .min_by(|a, b| a.distance.total_cmp(&b.distance));
-            match next.filter(|next| next.distance < nearest.distance) {
-                Some(next) => nearest = next,
-                None => break,
+            let [one, two] = links;
+            let beside = [
+                [one.wrapping_sub(stride), two],
+                [one + stride, two],
+                [one, two.wrapping_sub(stride)],
+                [one, two + stride],
+            ];
+            let next = beside.into_iter().filter(is_queried).map(|links| (gap(links), links));
+            match next.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|next| next.0 < nearest) {
+                Some(next) => ((nearest, links), stride) = (next, 2 * stride),
+                None if stride == 1 => break,
+                None => stride /= 2,
             }
         }
-        self.counts(nearest.links.map(|link| link as usize)).then_some(nearest)
+        self.counts(links).then(|| measure_pair([&self.robot; 2], links))
     }
 
     /// Returns a link with its neighbours.
