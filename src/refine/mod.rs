@@ -1,10 +1,10 @@
 //! A tube divided into pieces: bounding volumes, points inside the tube, and the order in which
 //! pieces are divided (`best_first`).
 
-#[cfg(feature = "robots")]
-mod ball_tree;
 mod best_first;
 mod bounding_body;
+#[cfg(feature = "robots")]
+mod capsule_tree;
 mod placed_tube;
 mod refinable;
 #[cfg(feature = "robots")]

@@ -11,15 +11,15 @@
 //!   long as the clearance. If both are 0, y is a common point and the tubes overlap.
 //!
 //! # Algorithm
-//! 1. **Begin** with the pairs that are at most `upper` apart (`ball_tree`). `upper` is the first
+//! 1. **Begin** with the pairs that are at most `upper` apart (`capsule_tree`). `upper` is the first
 //!    upper bound or the margin: farther pairs cannot change the answer.
 //! 2. **Upper bound of a pair** (`found_from`). Start with y between the bodies. Move y to the
 //!    middle of the two tube points found from it; repeat up to [`MAX_MOVES`] times while the sum
 //!    decreases.
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
-use super::ball_tree::{BallTree, NearPairs, WaitingRuns, pays};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
+use super::capsule_tree::{CapsuleTree, NearPairs, WaitingRuns, pays};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable, UpperBound};
 use super::tube_point::TubePoint;
@@ -100,7 +100,7 @@ impl UpperBound for PairUpperBound {
 pub(crate) struct PairQueue {
     pieces: Vec<Piece>,
     bodies: [Vec<(Piece, BoundingBody)>; 2],
-    trees: [BallTree; 2],
+    trees: [CapsuleTree; 2],
     waiting: WaitingRuns,
     nearest: NearestPairs,
 }

@@ -100,8 +100,8 @@
 //! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
-use super::ball_tree::{BallTree, NearPairs, WaitingRuns};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
+use super::capsule_tree::{CapsuleTree, NearPairs, WaitingRuns};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable};
 use super::section_motions::{SectionMotion, SectionMotions};
@@ -183,7 +183,7 @@ pub(crate) struct SelfPairQueue {
     turned: Vec<[Real; 2]>,
     /// For each body, how many faces before it are at starts and at ends of sections.
     faces_before: Vec<[u32; 2]>,
-    tree: BallTree,
+    tree: CapsuleTree,
     waiting: WaitingRuns,
     nearest: NearestPairs,
 }

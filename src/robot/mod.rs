@@ -35,4 +35,7 @@ pub(crate) use {
     radius_steps::{RadiusSteps, is_same},
 };
 #[cfg(feature = "robots")]
-pub(crate) use {radius_steps::is_step, scale::LEVEL};
+pub(crate) use {
+    radius_steps::is_step,
+    scale::{LEVEL, length_and_direction},
+};
