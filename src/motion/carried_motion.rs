@@ -45,8 +45,15 @@ pub(crate) struct CarriedPiece {
 }
 
 impl CarriedPiece {
-    /// The piece between two shares of a section of a tube at a pose.
-    pub(crate) fn new(tube: &Tube, pose: &Pose, section: &Section, shares: [Real; 2]) -> Self {
+    /// The piece between two shares of a section of a tube at a pose. `has_rim`: whether the turn
+    /// of its discs matters. Otherwise its directions are not computed.
+    pub(crate) fn new(
+        tube: &Tube,
+        pose: &Pose,
+        section: &Section,
+        shares: [Real; 2],
+        has_rim: bool,
+    ) -> Self {
         let ends = shares.map(|share| tube.at_share(section, share));
         let known = tube.bound(section, tube.ticks_around(section, shares));
         let long = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
@@ -59,7 +66,11 @@ impl CarriedPiece {
             ends: [0, 1].map(|end| *pose * ends[end].point),
             beside: RigidPath::beside_of(tube, section, shares, ends.map(|end| end.off), &known)
                 + rounding * reach,
-            directions: [0, 1].map(|end| pose.rotation * ends[end].direction),
+            directions: if has_rim {
+                [0, 1].map(|end| pose.rotation * ends[end].direction)
+            } else {
+                [Vector::ZERO; 2]
+            },
             bend: 0.5 * known.curvature * long + tilt,
             reach,
         }
@@ -75,14 +86,13 @@ impl CarriedPiece {
     /// The largest `|turn x tangent|`.
     fn across(&self, turn: Vector) -> Real {
         let size = length(turn);
+        if self.directions.contains(&Vector::ZERO) {
+            return size;
+        }
         let [start, end] = self.directions.map(|direction| length(turn.cross(direction)));
         // Without a direction the tilt is infinite or NaN.
         let across = start.max(end) + size * self.bend;
-        if across < size && self.directions.iter().all(|way| *way != Vector::ZERO) {
-            across
-        } else {
-            size
-        }
+        if across < size { across } else { size }
     }
 }
 
@@ -176,10 +186,10 @@ impl<'a> CarriedMotion<'a> {
         let piece = &piece();
         // Claim 1: `away` is D0, `own` U, `carried` g.
         let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
-        let away = piece.most(1.0, |point| point - frame.at);
         let twist = if frame.turn_off == 0.0 {
             0.0
         } else {
+            let away = piece.most(1.0, |point| point - frame.at);
             2.0 * frame.turn_off * (away + half * (stated.point + frame.off))
         };
         let own = stated.point + frame.off + twist;
@@ -235,7 +245,7 @@ impl<'a> CarriedMotion<'a> {
         let Some(part) = tube.sections().get(section).filter(|_| self.has_frame()) else {
             return stated;
         };
-        let piece = || CarriedPiece::new(tube, pose, part, shares);
+        let piece = || CarriedPiece::new(tube, pose, part, shares, true);
         self.speeds(stated, piece, &CommonFrame::REST).seen
     }
 }

@@ -128,7 +128,7 @@ fn carried_speeds_hold_in_any_frame() {
             let section = random.below(2) as usize;
             let (a, b) = (random.unit(), random.unit());
             let shares = [a.min(b), a.max(b)];
-            let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[section], shares);
+            let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[section], shares, true);
             let stated = carried.stated(section, shares);
             let beside =
                 CommonFrame::of_path(&RigidPath::new(other_poses(&other)).unwrap(), middle);

@@ -159,6 +159,27 @@ fn points_distances_and_tests_of_touching_placements_agree() {
     }
 }
 
+/// parry's contact is the distance of two points along its normal. For a face and an edge that are
+/// level within rounding the points may be far apart across it.
+#[test]
+fn contacts_have_points_as_far_apart_as_they_state() {
+    for (kind, seed) in [(Wall::Cuboid, 301), (Wall::Cuboid, 1), (Wall::Cone, 1)] {
+        let (mut random, mut apart) = (Random::new(seed), 0);
+        for _ in 0..1000 {
+            let placement = random.placement(kind);
+            let (pos12, g1, g2) = (placement.pose, &*placement.robot, &*placement.wall);
+            let asked = Asked { placement: &placement, pos12, g1, g2 };
+            let contact = asked.contact(0.02).unwrap();
+            if let Some(contact) = contact.filter(|contact| contact.dist > 0.0) {
+                apart += 1;
+                let length = asked.length(contact.point1, contact.point2);
+                asked.assert((length - contact.dist).abs() <= tolerance(kind), (contact, length));
+            }
+        }
+        assert!(apart > 100, "{kind:?} {apart}");
+    }
+}
+
 /// parry's GJK and EPA return `None` for some of them.
 #[test]
 fn an_unbounded_contact_finds_what_distance_finds() {

@@ -54,6 +54,22 @@ fn two_robots_of_many_sections_are_bounded() {
     }
 }
 
+/// Far apart nearly all pairs of sections are as near: only those that may be nearest are kept.
+#[test]
+fn two_robots_of_many_sections_need_memory_for_their_sections() {
+    let count = 1500;
+    for taper in [0.0, 0.3] {
+        let (_, tube) = helix(count, taper);
+        let (here, there) = (Pose::IDENTITY, Pose::translation(1000.0, 1.0, 2.0));
+        let mut pair = RobotPair::new();
+        let memory = allocation_counter::measure(|| {
+            pair.clearance(&tube, &here, &tube, &there, 1e-6).unwrap();
+        });
+        // All pairs of sections are a hundred times as many bytes.
+        assert!(memory.bytes_max < 4000 * u64::from(count), "{}", memory.bytes_max);
+    }
+}
+
 /// A chain of very many sections and itself decides as its links do.
 #[test]
 fn a_robot_of_many_sections_is_decided_as_its_links() {
@@ -150,18 +166,23 @@ fn a_stated_turn_of_more_than_pi_is_pi() {
 #[test]
 fn samples_taken_twice_with_equal_gaps_are_accepted() {
     let mut random = Random::new(92);
-    for round in 0..60 {
-        let pose = random.pose(5.0);
-        let gap = [1e-5, 1e-4, 1e-6][round % 3];
+    for round in 0..120 {
+        let pose = Pose::from_translation(random.point() * 1e4) * random.pose(5.0);
+        let (gap, bend) = ([1e-5, 1e-4, 1e-6][round % 3], [0.05, 0.002][round / 3 % 2]);
         let mut points = Vec::new();
         for k in 0..30 {
-            let a = 0.05 * f64::from(k);
-            let point = Vector::new(20.0 * a.cos(), 20.0 * a.sin(), 0.0);
-            let aside = Vector::new(a.cos(), a.sin(), 0.0) * gap;
-            points.extend([pose * point, pose * (point + aside)]);
+            let (a, size) = (bend * f64::from(k), 1.0 / bend);
+            let point = Vector::new(a.cos(), a.sin(), 0.0) * size;
+            // Across the curve, or in any direction.
+            let aside = match round % 4 {
+                0 | 1 => Vector::new(a.cos(), a.sin(), 0.0),
+                2 => Vector::Z,
+                _ => random.direction(),
+            };
+            points.extend([pose * point, pose * (point + aside * gap)]);
         }
         let tube = Tube::with_constant_radius(&points, 1.0, None);
         let tube = tube.unwrap_or_else(|error| panic!("{round} {gap}: {error}"));
-        assert!((tube.length() - 20.0 * 0.05 * 29.0).abs() < 0.1);
+        assert!((tube.length() - 29.0).abs() < 0.1);
     }
 }

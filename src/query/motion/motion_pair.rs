@@ -356,7 +356,7 @@ fn fastest_section(
         let shares = [0.0, 1.0];
         let stated = carried.stated(number, shares);
         let stated = seen_from.speed(&shapes.carried, robot, stated, || {
-            CarriedPiece::new(tube.tube, &tube.pose, section, shares)
+            CarriedPiece::new(tube.tube, &tube.pose, section, shares, true)
         });
         check_speed(number, stated.point)?;
         // A body without a flat end needs no turn. The turn of a link of length 0 is infinite. A

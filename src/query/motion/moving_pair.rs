@@ -6,7 +6,7 @@ use super::refinement::{BoundedPiece, WorkItem};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, Speed};
-use crate::refine::{BoundingBody, PiecePair, SectionRange, TubePair};
+use crate::refine::{Body, BoundingBody, PiecePair, SectionRange, TubePair};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
@@ -79,7 +79,8 @@ impl<'t> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_> {
             let stated = self.motions[number].stated(section as usize, shares);
             let seen = self.seen_from.speed(&self.motions, number, stated, || {
                 let placed = tubes.tube(number);
-                CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares)
+                let (section, has_rim) = (placed.section(section), range.outer.is_flat());
+                CarriedPiece::new(placed.tube, &placed.pose, section, shares, has_rim)
             });
             let named =
                 |error: RobotError| ProximityError::Motion(error).of_robot(self.names[number]);

@@ -13,7 +13,7 @@ use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound};
 use crate::pair::Nearest;
-use crate::refine::{BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
+use crate::refine::{Body, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
 use crate::search::hierarchy::MeshSpeed;
 use parry3d_f64::math::{Real, Vector};
 
@@ -49,8 +49,11 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
         let mut with_shift = Real::INFINITY;
         if self.motion.has_frame() {
             let placed = &tube.tube;
-            let of =
-                || CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares);
+            let has_rim = outer.is_flat();
+            let of = || {
+                let section = placed.section(section);
+                CarriedPiece::new(placed.tube, &placed.pose, section, shares, has_rim)
+            };
             let seen = |frame| self.motion.speeds(speed, of, &frame).seen;
             if shift != Vector::ZERO {
                 with_shift = seen(CommonFrame::shifting(shift)).point;
