@@ -245,6 +245,8 @@ impl<'a> RobotWithItself<'a> {
             return true;
         }
         let mut limit = limit;
+        // Consecutive pairs often have a link in common.
+        let mut known: [Option<(usize, JoinedLink)>; 2] = [None; 2];
         faces.run(&self.robot, turns, band, limit, |links, [in_band, look]| {
             let is_half_turn = links[1] >= turns.queried_from[links[0]];
             if in_band && is_half_turn && band == Band::All {
@@ -259,8 +261,13 @@ impl<'a> RobotWithItself<'a> {
             if !look && !is_at_face {
                 return Some(limit);
             }
-            let joined = links.map(|link| self.joined(link));
-            let [one, two] = &joined;
+            for (known, link) in known.iter_mut().zip(links) {
+                if known.is_none_or(|(other, _)| other != link) {
+                    *known = Some((link, self.joined(link)));
+                }
+            }
+            let [Some((_, one)), Some((_, two))] = &known else { return Some(limit) };
+            let joined = [one, two];
             let tolerance = one.tolerance(two);
             let bound = |limit: PairLimit| limit.distance() + tolerance.0;
             if look && one.is_face(1) && two.is_face(0) {
@@ -277,7 +284,7 @@ impl<'a> RobotWithItself<'a> {
                 return Some(limit);
             }
             for (on_face, other) in [(0, 1), (1, 0)] {
-                let [face, beside] = [&joined[on_face], &joined[other]];
+                let [face, beside] = [joined[on_face], joined[other]];
                 for end in [0, 1] {
                     // The ball around a face contains it: the test excludes most links.
                     if !face.is_face(end)
