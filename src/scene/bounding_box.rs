@@ -84,6 +84,11 @@ impl BoundingBox {
         length(way) - 64.0 * Real::UNIT_ROUNDOFF * largest
     }
 
+    /// The distance of a point, without its rounding.
+    pub fn distance_to_point(&self, point: Vector) -> Real {
+        length((self.low - point).max(point - self.high).max(Vector::ZERO))
+    }
+
     /// A lower bound on the distance of a link.
     pub fn distance_to(&self, link: &PlacedLink) -> Real {
         link.distance_to_box(self.low, self.high)

@@ -44,7 +44,7 @@ use crate::pair::PlacedLink;
 use crate::query::motion::{half_length, midpoint};
 use crate::refine::{Piece, PlacedTube};
 use crate::robot::{COORDINATE_LIMIT, RobotError};
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::{Pose, Real, Vector};
 use std::cell::RefCell;
 
 /// How many shapes of a robot are kept. The queries of a scene share the shapes of the first
@@ -109,6 +109,9 @@ struct SweptBody {
     /// The part.
     times: [Real; 2],
     body: PlacedLink,
+    /// The ball around the body.
+    centre: Vector,
+    radius: Real,
     way: Real,
     /// The largest coordinate of the body, with radius, pose and way.
     reach: Real,
@@ -116,12 +119,18 @@ struct SweptBody {
 
 impl SweptBody {
     /// A lower bound on the distance of the piece from a box during the part. `size`: the largest
-    /// coordinate of the structure and its pose.
-    fn at_least(&self, around: &BoundingBox, size: Real) -> Real {
+    /// coordinate of the structure and its pose. A bound from the ball is enough if it is at least
+    /// `wanted`.
+    fn at_least(&self, around: &BoundingBox, size: Real, wanted: Real) -> Real {
         let largest = self.reach + size;
         let rounding = 1024.0 * Real::UNIT_ROUNDOFF * largest;
         // Written so that NaN is near.
         if largest < COORDINATE_LIMIT / 16.0 {
+            let of_ball = around.distance_to_point(self.centre) - self.radius;
+            let apart = of_ball - self.way - rounding;
+            if apart >= wanted {
+                return apart;
+            }
             around.distance_to(&self.body) - self.way - rounding
         } else {
             Real::NEG_INFINITY
@@ -146,7 +155,9 @@ fn sweep(
         let largest = start.abs().max(end.abs()).max_element() + radius + way;
         let is_known = body.is_finite() && way < Real::INFINITY;
         let reach = if is_known { largest + translation } else { Real::INFINITY };
-        swept.push(SweptBody { times, body, way, reach });
+        let half = body.along() * 0.5;
+        let (centre, radius) = (start + half, half.length() + radius);
+        swept.push(SweptBody { times, body, centre, radius, way, reach });
     }
 }
 
@@ -168,15 +179,14 @@ impl RestingTube {
 
 fn at_least(swept: &[SweptBody], structure: &Structure) -> Real {
     let (around, size) = (structure.around_in_scene(), structure.size());
-    least(swept.iter().map(|body| body.at_least(&around, size)))
+    swept
+        .iter()
+        .fold(Real::INFINITY, |least, body| lesser(least, body.at_least(&around, size, least)))
 }
 
-/// Returns the least of some lower bounds; NaN, which counts as near, if one is NaN.
-fn least(bounds: impl Iterator<Item = Real>) -> Real {
-    let lesser = |least: Real, bound: Real| {
-        if least <= bound || least.is_nan() { least } else { bound }
-    };
-    bounds.fold(Real::INFINITY, lesser)
+/// Returns the lesser of two lower bounds; NaN, which counts as near, if one is NaN.
+fn lesser(least: Real, bound: Real) -> Real {
+    if least <= bound || least.is_nan() { least } else { bound }
 }
 
 /// A motion of a robot in a scene.
@@ -241,11 +251,15 @@ impl<'a> MovingRobot<'a> {
     /// [`at_least`](Self::at_least) for a structure that moves.
     pub fn at_least_moving(&self, structure: &Structure, end: &MovingStructure) -> Real {
         let parts = self.swept.chunk_by(|one, other| one.times == other.times);
-        least(parts.flat_map(|part| {
+        let mut least = Real::INFINITY;
+        for part in parts {
             let (around, way) = end.around(structure, part[0].times);
             let size = end.size() + way;
-            part.iter().map(move |body| body.at_least(&around, size) - way)
-        }))
+            for body in part {
+                least = lesser(least, body.at_least(&around, size, least + way) - way);
+            }
+        }
+        least
     }
 
     /// A lower bound on the distance from another robot that moves at the same time: by the boxes
@@ -371,16 +385,16 @@ impl Motion for PlacedMotion<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parry3d_f64::math::Vector;
 
     /// A bound that is not a number counts as near, wherever it stands.
     #[test]
     fn a_bound_that_is_no_number_is_near() {
-        assert_eq!(least([3.0, 1.0, 2.0].into_iter()), 1.0);
+        let least = |bounds: [Real; 3]| bounds.into_iter().fold(Real::INFINITY, lesser);
+        assert_eq!(least([3.0, 1.0, 2.0]), 1.0);
         for place in 0..3 {
             let mut bounds = [3.0, 1.0, 2.0];
             bounds[place] = Real::NAN;
-            assert!(least(bounds.into_iter()).is_nan(), "{place}");
+            assert!(least(bounds).is_nan(), "{place}");
         }
     }
 
