@@ -17,8 +17,9 @@
 //!    `|ci - c| + |ai . d|`. So the ends ci +- ai are beside the axis, at the distance
 //!    `|ai - d (ai . d)|`. r is the largest sum of this distance and ri. A capsule is convex, so it
 //!    contains a half if it contains the balls at both ends. If c1 = c2, d is 0 and a too.
-//! 2. **Two capsules** with `w = c2 - c1` are at least `|w| - (|w . a1| + |w . a2|) / |w| - r1 - r2`
-//!    apart: that is the gap along w. If w = 0 the gap is NaN, and the pair is visited.
+//! 2. **Two capsules** with `w = c2 - c1` are at least
+//!    `|w| - (|w . a1| + |w . a2|) / |w| - r1 - r2` apart: that is the gap along w. If w = 0 the
+//!    gap is NaN, and the pair is visited.
 //!
 //! **Rounding.** Each level adds to r the rounding of c, a and r: 16 u times the sum of r and the
 //! largest coordinates of c and a. The gap errs by few u of the largest coordinate of all. `bound`
@@ -171,7 +172,7 @@ impl<'t> NearPairs<'t> {
         Self { trees, waiting, bound }
     }
 
-    /// Returns the next pair. `may_ask(runs)`: whether any pair of bodies of the two runs is wanted.
+    /// Returns the next pair. `may_ask(runs)`: whether any pair of bodies of two runs is wanted.
     pub(super) fn next(
         &mut self,
         may_ask: impl Fn([Range<usize>; 2]) -> bool,
