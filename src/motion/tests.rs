@@ -176,7 +176,7 @@ fn a_point_that_leaves_the_axis_of_the_other_frame_is_seen_to_turn() {
     assert!(!carried.has_frame());
     let turned = [-0.5, 0.5].map(|share| Pose::rotation(Vector::Z * turn * share));
     let frame = CommonFrame::between(turned, times).unwrap();
-    let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[0], shares);
+    let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[0], shares, true);
     let seen = carried.speeds(carried.stated(0, shares), || piece, &frame).seen;
     // Velocity 1 and arm 1/2 at either end of the interval.
     let fastest = Real::hypot(1.0, 0.5 * turn);
