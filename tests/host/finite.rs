@@ -1,18 +1,22 @@
 //! No NaN leaves a query whose input is finite: every number of an answer is finite and every
-//! normal has a direction, or the pair is `Unsupported`. Shapes have degenerate sizes, and
-//! placements are concentric, aligned and touching as often as general.
+//! normal has a direction, or the pair is `Unsupported`. The pairs are those of the dispatcher's
+//! table: a link or a chain beside each kind of shape. Shapes have degenerate sizes, and placements
+//! are concentric, aligned and touching as often as general.
 
 use crate::draw::Draw;
 use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{
-    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
+    ClosestPoints, Contact, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
+    QueryDispatcher, ShapeCastHit, ShapeCastOptions,
 };
 use parry_continuum::parry::shape::{
-    Cone, Cuboid, Cylinder, HalfSpace, RoundCuboid, RoundCylinder, RoundShape, Segment, Shape,
-    SharedShape, Triangle,
+    Cone, Cuboid, Cylinder, HalfSpace, HeightField, RoundCuboid, RoundCylinder, RoundShape,
+    Segment, Shape, SharedShape, Triangle,
 };
+use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
+use std::fmt::Arguments;
 
 /// A size, 0 as often as one in four.
 fn size(random: &mut Random) -> Real {
@@ -20,7 +24,7 @@ fn size(random: &mut Random) -> Real {
 }
 
 /// The number of kinds of shapes beside a robot.
-const KINDS: usize = 16;
+const KINDS: usize = 18;
 
 fn shape(random: &mut Random, kind: usize) -> Option<SharedShape> {
     let [a, b, c] = [0; 3].map(|_| size(random));
@@ -59,6 +63,12 @@ fn shape(random: &mut Random, kind: usize) -> Option<SharedShape> {
             let points = [Vector::ZERO, a * Vector::X, Vector::ONE];
             SharedShape::new(Chain::from_centreline(&points, &[b; 2]).ok()?)
         }
+        15 => SharedShape::polyline(vec![Vector::ZERO, half, random.vector(1.0)], None),
+        16 => {
+            let heights = Array2::new(2, 3, vec![0.0, a, 0.0, b, 0.0, random.unit()]);
+            let scale = Vector::new(1.0, size(random), 1.0 + c);
+            SharedShape::new(HeightField::new(heights, scale))
+        }
         _ => SharedShape::compound(vec![
             (Pose::IDENTITY, SharedShape::new(Cylinder::new(a, b))),
             (Pose::translation(1.0, 0.0, 0.0), SharedShape::ball(c)),
@@ -66,8 +76,21 @@ fn shape(random: &mut Random, kind: usize) -> Option<SharedShape> {
     })
 }
 
+/// A link or, one in four times, a chain.
+fn robot(random: &mut Random) -> SharedShape {
+    if !random.chance(0.25) {
+        return SharedShape::new(link(random));
+    }
+    let (a, radii) = (size(random), [size(random), size(random)]);
+    let points = [-0.5 * Vector::Z, a * Vector::X, 0.5 * Vector::Z];
+    match Chain::from_centreline(&points, &radii) {
+        Ok(chain) => SharedShape::new(chain),
+        Err(_) => SharedShape::new(Chain::capsules(&points, &radii).unwrap()),
+    }
+}
+
 /// A link of any form, as often one of plain sizes along an axis.
-fn robot(random: &mut Random) -> ModifiedCylinder {
+fn link(random: &mut Random) -> ModifiedCylinder {
     if random.chance(0.5) {
         return random.link();
     }
@@ -102,8 +125,40 @@ fn is_sound(contact: &Contact) -> bool {
         && is_unit(contact.normal2)
 }
 
-/// Asks all queries. Returns whether the manifolds have points.
-fn ask(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real, context: &str) -> bool {
+fn assert_sound_hit(hit: Option<ShapeCastHit>, context: Arguments) {
+    let Some(hit) = hit else { return };
+    let vectors = [hit.witness1, hit.witness2, hit.normal1, hit.normal2];
+    let is_finite = hit.time_of_impact.is_finite() && vectors.iter().all(|v| v.is_finite());
+    assert!(is_finite, "{context}: {hit:?}");
+}
+
+/// Asks both casts: the second shape comes nearer, and the first one turns.
+fn cast(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real, context: Arguments) {
+    let dispatcher = ContinuumDispatcher::default();
+    let options = ShapeCastOptions { target_distance: prediction, ..Default::default() };
+    let towards = -pos12.translation;
+    if let Ok(hit) = dispatcher.cast_shapes(pos12, towards, g1, g2, options) {
+        assert_sound_hit(hit, context);
+    }
+    let turns = NonlinearRigidMotion { angvel: Vector::Y, ..NonlinearRigidMotion::identity() };
+    let comes =
+        NonlinearRigidMotion { start: *pos12, linvel: towards, ..NonlinearRigidMotion::identity() };
+    for stop in [true, false] {
+        if let Ok(hit) = dispatcher.cast_shapes_nonlinear(&turns, g1, &comes, g2, 0.0, 1.0, stop) {
+            assert_sound_hit(hit, context);
+        }
+    }
+}
+
+/// Asks the queries of a placement. Returns whether the manifolds have points, or `None` if they
+/// are `Unsupported`.
+fn ask(
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    prediction: Real,
+    context: Arguments,
+) -> Option<bool> {
     let dispatcher = ContinuumDispatcher::default();
     if let Ok(apart) = dispatcher.distance(pos12, g1, g2) {
         assert!(apart.distance.is_finite() && apart.distance >= 0.0, "{context}: {apart:?}");
@@ -120,7 +175,7 @@ fn ask(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real, context: 
     let answer = dispatcher.contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut None);
     let mut met = false;
     for manifold in manifolds.iter().filter(|manifold| !manifold.points.is_empty()) {
-        met = answer.is_ok();
+        met = true;
         let (n1, n2) = (manifold.local_n1, manifold.local_n2);
         assert!(is_unit(n1) && is_unit(n2), "{context}: {manifold:?}");
         for point in &manifold.points {
@@ -129,7 +184,7 @@ fn ask(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real, context: 
             assert!(is_finite, "{context}: {manifold:?}");
         }
     }
-    met
+    answer.is_ok().then_some(met)
 }
 
 #[test]
@@ -137,17 +192,30 @@ fn every_number_is_finite() {
     for kind in 0..KINDS {
         let mut random = Random::new(411 + kind as u64);
         let (draws, mut met, mut apart) = (rounds(2500_usize), 0, 0);
-        for _ in 0..draws {
-            let (link, pose) = (robot(&mut random), pose(&mut random));
+        // The number of manifolds that are answered in both orders.
+        let (mut answered, mut refused) = (0, 0);
+        while answered < draws {
+            let (robot, pose) = (robot(&mut random), pose(&mut random));
             let Some(other) = shape(&mut random, kind) else { continue };
             let prediction = [0.0, 0.1, 1.0][random.index(3)];
-            let context = format!("{link:?} {:?} {pose:?} {prediction}", other.as_typed_shape());
-            let there = ask(&pose, &link, &*other, prediction, &context);
-            let back = ask(&pose.inverse(), &*other, &link, prediction, &context);
+            let (link, chain) = (robot.as_shape::<ModifiedCylinder>(), robot.as_shape::<Chain>());
+            let other_type = other.as_typed_shape();
+            let context = format_args!("{link:?} {chain:?} {other_type:?} {pose:?} {prediction}");
+            let orders: [(Pose, &dyn Shape, &dyn Shape); 2] =
+                [(pose, &*robot, &*other), (pose.inverse(), &*other, &*robot)];
+            let answers = orders.map(|(pos12, g1, g2)| {
+                cast(&pos12, g1, g2, prediction, context);
+                ask(&pos12, g1, g2, prediction, context)
+            });
+            refused += answers.iter().filter(|answer| answer.is_none()).count();
+            let [Some(there), Some(back)] = answers else { continue };
+            answered += 1;
             met += usize::from(there) + usize::from(back);
             apart += usize::from(!there) + usize::from(!back);
         }
+        println!("kind {kind}: {answered} answered, {refused} refused; {met} met, {apart} apart");
         assert!(met > draws / 5 && apart > draws / 50, "kind {kind}: {met} {apart} of {draws}");
+        assert!(refused < draws / 5, "kind {kind}: {refused} refused of {draws}");
     }
 }
 
@@ -157,7 +225,9 @@ fn a_disc_and_a_concentric_ball_are_answered() {
     let ball = ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, 0.3).unwrap();
     let place = Vector::new(-0.371699422765307, 0.039521769789969415, -0.5457576308255477);
     let disc = Cylinder::new(0.0, 0.5);
-    assert!(ask(&Pose::from_translation(place), &disc, &ball, 0.1, "disc"));
+    assert!(
+        ask(&Pose::from_translation(place), &disc, &ball, 0.1, format_args!("disc")) == Some(true)
+    );
     // The nearest point of the disc is on its rim, 0.5 from the axis; the ball is 0.3 thick.
     let rim = 0.5 * Vector::new(place.x, 0.0, place.z).normalize();
     let contact = ContinuumDispatcher::default()
@@ -172,12 +242,12 @@ fn a_disc_and_a_concentric_ball_are_answered() {
         let contact = ContinuumDispatcher::default().contact(&pose, &ball, &round, 0.1);
         let contact = contact.unwrap().unwrap();
         assert!(is_sound(&contact) && (contact.dist + 0.7).abs() < 0.01 * 0.7, "{contact:?}");
-        assert!(ask(&pose, &ball, &round, 0.1, "round cylinder"));
+        assert!(ask(&pose, &ball, &round, 0.1, format_args!("round cylinder")) == Some(true));
     }
     // A link across the disc's rim touches it, with any caps.
     for caps in [Cap::Flat, Cap::Round] {
         let link = ModifiedCylinder::new(-Vector::X, Vector::X, 0.1, [caps; 2]).unwrap();
         let at_rim = Pose::from_translation(Vector::new(0.5, 0.05, 0.0));
-        assert!(ask(&at_rim, &disc, &link, 0.1, "link at the rim"));
+        assert!(ask(&at_rim, &disc, &link, 0.1, format_args!("link at the rim")) == Some(true));
     }
 }
