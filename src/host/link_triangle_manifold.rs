@@ -20,9 +20,10 @@
 //!
 //! 1. At a *free edge*, which no other triangle shares, nothing is known about the other side. A
 //!    link that lies on the face's plane ([`side_of_plane`]) may come from another mesh or height
-//!    field that continues the face, and the edge must not stop it: the contact has the face's
-//!    normal. While the link is beside the edge, it has no contact until it touches: the face does
-//!    not extend below the link, and a contact along the plane would stop the link. Any other link
+//!    field that continues the face, and the edge must not stop it: the points are those of the
+//!    contact's own normal, each as deep as along it, but the manifold has the face's normal.
+//!    While the link is beside the edge, it has no contact until it touches: the face does not
+//!    extend below the link, and a contact along the plane would stop the link. Any other link
 //!    meets the edge of a thin wall, and the contact keeps its normal.
 //! 2. If the constraints reject a normal, it comes *from behind* a one-sided surface. It is passed
 //!    through the mirrored constraints, as parry does for a two-sided surface.
@@ -72,7 +73,8 @@ pub(super) struct Met {
     pub dist: Real,
     /// Whether the constraints reject the contact's own normal.
     pub is_from_behind: bool,
-    /// Whether the constraints have turned it; then the last point of the manifold is the closest.
+    /// Whether the constraints have turned it, with the points; then the last point of the manifold
+    /// is the closest.
     pub is_turned: bool,
     /// Whether the link is the first shape.
     pub link_is_first: bool,
@@ -148,13 +150,16 @@ pub(super) fn update<M, C: Default + Copy>(
         unit(normal).unwrap_or(normal)
     };
     let has_turned = |normals| (of_link(normals) - found.normal).length() > TURNED;
+    let side = || side_of_plane(&local);
     let has_constraints = rules.constraints.0.is_some() || rules.constraints.1.is_some();
-    let is_along = |side: Vector| has_constraints && has_turned(in_order(-side));
-    let side = side_of_plane(&local);
-    if (constrained.is_from_behind || has_turned(constrained.normals) || side.is_some_and(is_along))
-        && edges_at(local.triangle, found.on_other).any(rules.is_free)
-    {
-        constrained = match side {
+    let is_along = |side: Vector| (side + found.normal).length() > TURNED;
+    let is_free = has_constraints
+        && (constrained.is_from_behind
+            || has_turned(constrained.normals)
+            || side().is_some_and(is_along))
+        && edges_at(local.triangle, found.on_other).any(rules.is_free);
+    if is_free {
+        constrained = match side() {
             Some(side) if found.distance > 0.0 && found.normal.dot(-side) < BESIDE => {
                 return Ok(None);
             }
@@ -163,12 +168,13 @@ pub(super) fn update<M, C: Default + Copy>(
         };
     }
     let Constrained { normals, is_from_behind } = constrained;
-    let is_turned = has_turned(normals);
-    let normal = if is_turned { of_link(normals) } else { found.normal };
+    let normal = if has_turned(normals) { of_link(normals) } else { found.normal };
+    let is_turned = has_turned(normals) && !is_free;
 
-    let mut meeting = Meeting::new(&local.link, local.triangle, normal, 1.0);
+    let along = if is_turned { normal } else { found.normal };
+    let mut meeting = Meeting::new(&local.link, local.triangle, along, 1.0);
     rim::collect(&mut meeting);
-    support_points::points(&local.link, normal, |on_link, name| {
+    support_points::points(&local.link, along, |on_link, name| {
         meeting.add_above_face(on_link, name)
     });
     crest::collect(&mut meeting);
@@ -180,7 +186,7 @@ pub(super) fn update<M, C: Default + Copy>(
     for point in meeting.points.iter().filter(|point| !is_turned || point.dist >= least) {
         manifold.points.push(TrackedContact::flipped(
             place(point.on_link),
-            to_triangle(place(point.on_link + meeting.normal * point.dist)),
+            to_triangle(place(point.on_link + normal * point.dist)),
             point.of_link,
             point.of_triangle,
             point.dist * local.unit,

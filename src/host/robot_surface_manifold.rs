@@ -22,7 +22,7 @@ use super::range::rounding_of_depths;
 use super::robot_surface::links_of;
 use crate::distance::{Vec3, point_triangle};
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::{NormalConstraints, VoxelsShapeContactManifoldsWorkspace};
 use parry3d_f64::query::{ContactManifold, ContactManifoldsWorkspace, Unsupported};
 use parry3d_f64::shape::{HeightField, Shape, TriMesh, Triangle, TrianglePseudoNormals};
@@ -68,6 +68,7 @@ where
         surface.collect_near(&link.aabb(&robot_pose).loosened(loose), &mut near);
         for (id, triangle) in &near {
             let normals = surface.constraints(*id);
+            let has_free = normals.as_ref().is_some_and(|normals| surface.has_free_edge(normals));
             let normals = normals.as_ref().map(|normals| normals as &dyn NormalConstraints);
             let (ids, constraints) = if robot_is_first {
                 ((index as u32, *id), (None, normals))
@@ -77,7 +78,7 @@ where
             let mut manifold = before
                 .remove(&ids)
                 .unwrap_or_else(|| ContactManifold::with_data(ids.0, ids.1, M::default()));
-            let is_free = |edge: usize| surface.is_free(*id, triangle, edge);
+            let is_free = |edge: usize| has_free && surface.is_free(*id, triangle, edge);
             let rules = TriangleRules { constraints, is_free: &is_free };
             let updated = LinkTrianglePair::new(link, triangle, robot_is_first).and_then(|pair| {
                 link_triangle_manifold::update(pos12, &pair, &rules, prediction, &mut manifold)
@@ -125,6 +126,9 @@ fn agree<M, C: Copy>(manifolds: &mut [ContactManifold<M, C>], met: &[Met], round
     }
 }
 
+/// Pseudo-normals that differ from the face's by rounding differ by less.
+const LEVEL: Real = 1e-9;
+
 #[derive(Clone, Copy)]
 enum TriangleSurface<'a> {
     Mesh(&'a TriMesh),
@@ -152,6 +156,13 @@ impl<'a> TriangleSurface<'a> {
             Self::Mesh(mesh) => mesh.triangle_normal_constraints(id),
             Self::Field(field) => field.triangle_normal_constraints(id),
         }
+    }
+
+    /// Returns `false` if each edge has a neighbour: a mesh's pseudo-normal of an edge without a
+    /// neighbour is the face's normal.
+    fn has_free_edge(self, normals: &TrianglePseudoNormals) -> bool {
+        let is_level = |edge: &Vector| (*edge - normals.face).length() <= LEVEL;
+        matches!(self, Self::Field(_)) || normals.edges.iter().any(is_level)
     }
 
     /// Returns whether the middle of an edge lies on no other triangle with an area, within

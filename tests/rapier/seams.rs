@@ -116,3 +116,72 @@ fn a_step_still_stops_what_slides_against_it() {
         }
     }
 }
+
+/// What a rod does in a slot.
+#[derive(Debug)]
+struct InSlot {
+    /// Whether it has left the slot.
+    is_out: bool,
+    /// The deepest that it was below its place on both edges, in radii.
+    sunk: Real,
+    is_asleep: bool,
+}
+
+/// A rod in a slot between two edges, `share` radii from its axis on either side, without friction.
+/// Gravity is tilted: it pushes the rod sideways with `push` times the force that lifts it over an
+/// edge.
+fn in_slot(rod: SharedShape, share: Real, push: Real, flags: TriMeshFlags) -> InSlot {
+    let plate = |from: Real, to: Real| [(from, -HALF), (to, -HALF), (to, HALF), (from, HALF)];
+    let (half, rise) = (share * RADIUS, (1.0 - share * share).sqrt());
+    let vertices = [plate(-HALF, -half), plate(half, HALF)].concat();
+    let vertices = vertices.into_iter().map(|(x, z)| Vector::new(x, 0.0, z)).collect();
+    let faces = vec![[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6]];
+    let slot = TriMesh::with_flags(vertices, faces, flags).unwrap();
+    let mut world = world(2.0 * RADIUS);
+    world.gravity = 9.81 * Vector::new(push * share / rise, -1.0, 0.0);
+    let slot = ColliderBuilder::new(SharedShape::new(slot)).friction(0.0);
+    world.insert(RigidBodyBuilder::fixed(), slot);
+    let along = Rot3::from_rotation_x(FRAC_PI_2);
+    let from = Pose::from_parts(Vector::new(0.0, rise * RADIUS, 0.1), along);
+    let collider = ColliderBuilder::new(rod).friction(0.0);
+    let (body, _) = world.insert(RigidBodyBuilder::dynamic().pose(from), collider);
+    let mut outcome = InSlot { is_out: false, sunk: 0.0, is_asleep: false };
+    for _ in 0..400 {
+        world.step();
+        let body = &world.bodies[body];
+        let [x, y] = [body.translation().x, body.translation().y].map(|at| at / RADIUS);
+        outcome.sunk = outcome.sunk.max(rise - y);
+        outcome.is_asleep = body.is_sleeping();
+        if x > 1.0 {
+            outcome.is_out = true;
+            break;
+        }
+    }
+    outcome
+}
+
+/// A rod that reaches less than 5 % of its radius below the edges of a slot lies on both faces:
+/// with a flag they hold it from below, but not sideways. All other slots hold it like a groove.
+#[test]
+fn a_shallow_slot_holds_a_rod_from_below() {
+    for flags in [
+        TriMeshFlags::empty(),
+        TriMeshFlags::FIX_INTERNAL_EDGES,
+        TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED,
+    ] {
+        for (name, rod) in bodies() {
+            // 1 - (1 - share^2)^(1/2) is 0.05 at a share of 0.312.
+            for share in [0.2, 0.3, 0.33, 0.4] {
+                let is_groove = share > 0.312 || flags.is_empty();
+                for push in [0.0, 0.2, 0.8] {
+                    let held = in_slot(rod.clone(), share, push, flags);
+                    let context = format!("{name} {flags:?} {share} {push}: {held:?}");
+                    assert_eq!(held.is_out, push > 0.0 && !is_groove, "{context}");
+                    // While it slides out, the edges lift it to the height of the faces.
+                    assert!(held.sunk < if held.is_out { 0.02 } else { 0.002 }, "{context}");
+                    assert!(held.is_asleep || held.is_out, "{context}");
+                }
+            }
+        }
+    }
+}

@@ -4,12 +4,14 @@
 //! rapier sweeps every fast body. An exact sweep of a link stops it at each step at which it slides
 //! along a wall or leaves it, because the solver lets them overlap by its allowed error.
 
-use continuum_testing::rounds;
+use crate::drop::{Drop, world};
 use continuum_testing::throws::{Outcome, ThrownBody, Throws, Wall};
-use parry_continuum::ContinuumDispatcher;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher};
 use parry_continuum::rapier::WorldDispatcher;
+use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
+use rapier3d_f64::prelude::{ColliderBuilder, SharedShape};
 
 const UNITS: [Real; 3] = [1e-3, 1.0, 1e3];
 
@@ -26,15 +28,13 @@ fn nothing_hangs_and_nothing_gains_energy() {
             }
             all
         };
-        let parrys = [ThrownBody::CompoundOfLinks, ThrownBody::CompoundOfCapsules].map(thrown);
-        let most = |of: fn(&Outcome) -> Real| parrys.iter().map(of).fold(0.0, Real::max);
         for body in [ThrownBody::RoundLink, ThrownBody::FlatLink, ThrownBody::Chain] {
             let ours = thrown(body);
+            let parrys = body.compounds().iter().map(|body| thrown(*body)).collect::<Vec<_>>();
             let context = format!("{wall:?} {body:?} {ours:?} beside {parrys:?}");
             assert_eq!(ours.passed, 0, "{context}");
             assert!(ours.moving > 300, "{context}");
-            assert!(ours.held_share() <= most(Outcome::held_share) + 1e-3, "{context}");
-            assert!(ours.rise <= most(|outcome| outcome.rise) + 0.01, "{context}");
+            assert!(ours.is_no_worse_than(&parrys), "{context}");
         }
     }
 }
@@ -51,6 +51,32 @@ fn a_link_leaves_the_ridge_that_it_touches() {
     }
 }
 
+/// rapier disables a body whose numbers are not finite. Links of any length fall on the rim of a
+/// cylinder without height.
+#[test]
+fn links_stay_in_the_world_at_the_rim_of_a_disc() {
+    let mut random = Random::new(70);
+    let mut met = 0;
+    for throw in 0..rounds(200_usize) {
+        let half = 0.5 * random.unit() * Vector::Y;
+        let caps = [[Cap::Flat; 2], [Cap::Round; 2]][throw % 2];
+        let link = ModifiedCylinder::new(-half, half, 0.3, caps).unwrap();
+        let disc = ColliderBuilder::new(SharedShape::cylinder(0.0, 0.5));
+        let turn = random.direction() * random.between(0.0, 3.1);
+        let beside = random.direction() * Vector::new(1.0, 0.0, 1.0);
+        let pose = Pose::new(0.5 * beside.normalize() + 0.9 * Vector::Y, turn);
+        let mut drop = Drop::new(world(1.0), disc, SharedShape::new(link), pose);
+        for _ in 0..90 {
+            drop.world.step();
+            let body = &drop.world.bodies[drop.body];
+            let is_finite = drop.pose().is_finite() && body.linvel().is_finite();
+            assert!(is_finite && body.is_enabled(), "{link:?} {pose:?}: {:?}", drop.pose());
+        }
+        met += usize::from(drop.world.bodies[drop.body].linvel().y > -4.0);
+    }
+    assert!(met > rounds(50), "{met}");
+}
+
 /// The dispatcher of a world answers like the exact one, except for the sweep of a fast body: that
 /// one ends inside the link's skin.
 #[test]
@@ -58,7 +84,7 @@ fn only_sweeps_of_fast_bodies_ignore_the_skin() {
     let [exact, world]: [&dyn QueryDispatcher; 2] =
         [&ContinuumDispatcher::default(), &WorldDispatcher::default()];
     let wall = continuum_testing::throws::roof(1.0);
-    let link = parry_continuum::ModifiedCylinder::capsule(-Vector::Z, Vector::Z, 0.1).unwrap();
+    let link = ModifiedCylinder::capsule(-Vector::Z, Vector::Z, 0.1).unwrap();
     let falls = NonlinearRigidMotion {
         start: Pose::from_translation(Vector::Y),
         linvel: -2.0 * Vector::Y,
@@ -69,9 +95,9 @@ fn only_sweeps_of_fast_bodies_ignore_the_skin() {
         let hit = dispatcher.cast_shapes_nonlinear(&falls, &link, &still, &wall, 0.0, 1.0, stop);
         hit.unwrap().unwrap().time_of_impact
     };
-    // From a height of 1 onto a ridge, at 2 a second: 0.9 to the surface, 0.001 to the skin.
+    // From a height of 1 onto a ridge, at 2 a second: 0.9 to the surface, 0.005 through the skin.
     for (dispatcher, stop, expected) in
-        [(exact, true, 0.45), (exact, false, 0.45), (world, true, 0.45), (world, false, 0.4505)]
+        [(exact, true, 0.45), (exact, false, 0.45), (world, true, 0.45), (world, false, 0.4525)]
     {
         assert!((time(dispatcher, stop) - expected).abs() < 1e-8, "{stop} {expected}");
     }

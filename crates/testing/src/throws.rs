@@ -14,7 +14,7 @@ use parry_continuum::parry::query::QueryDispatcher;
 use parry_continuum::parry::shape::{Compound, HeightField, TriMesh};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::rapier::rapier3d_f64::prelude::*;
-use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder, rapier};
+use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder, rapier};
 
 /// The radius of all bodies. They are 3 long.
 pub const RADIUS: Real = 0.08;
@@ -28,19 +28,28 @@ pub enum ThrownBody {
     RoundLink,
     /// One link with flat caps.
     FlatLink,
+    /// The round link as a part of parry's compound.
+    CompoundOfRoundLink,
+    /// The flat link as a part of parry's compound.
+    CompoundOfFlatLink,
+    /// A capsule in place of the round link.
+    CompoundOfCapsule,
     /// A bent chain of 12 links.
     Chain,
     /// The links of that chain as parry's compound.
     CompoundOfLinks,
-    /// Capsules in place of the links.
+    /// The chain with capsules in place of its links.
     CompoundOfCapsules,
 }
 
 impl ThrownBody {
     /// All bodies.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 8] = [
         Self::RoundLink,
+        Self::CompoundOfRoundLink,
+        Self::CompoundOfCapsule,
         Self::FlatLink,
+        Self::CompoundOfFlatLink,
         Self::Chain,
         Self::CompoundOfLinks,
         Self::CompoundOfCapsules,
@@ -51,37 +60,58 @@ impl ThrownBody {
         match self {
             Self::RoundLink => "a link, round caps",
             Self::FlatLink => "a link, flat caps",
+            Self::CompoundOfRoundLink => "that link as a compound",
+            Self::CompoundOfFlatLink => "that link as a compound",
+            Self::CompoundOfCapsule => "a capsule as a compound",
             Self::Chain => "a chain of 12 links",
             Self::CompoundOfLinks => "a compound of these links",
             Self::CompoundOfCapsules => "a compound of capsules",
         }
     }
 
+    /// The compounds that this robot is compared with; none for a compound.
+    pub fn compounds(self) -> &'static [Self] {
+        match self {
+            Self::RoundLink => &[Self::CompoundOfRoundLink, Self::CompoundOfCapsule],
+            Self::FlatLink => &[Self::CompoundOfFlatLink],
+            Self::Chain => &[Self::CompoundOfLinks, Self::CompoundOfCapsules],
+            _ => &[],
+        }
+    }
+
+    /// The robot whose mass the body has.
+    fn robot(self) -> Self {
+        let of = |robot: &Self| *robot == self || robot.compounds().contains(&self);
+        Self::ALL.into_iter().find(of).unwrap_or(self)
+    }
+
     fn shape(self, unit: Real) -> SharedShape {
         let (half, radius) = (1.4 * unit * Vector::Z, RADIUS * unit);
-        let compound = |part: &dyn Fn(&ModifiedCylinder) -> SharedShape| {
-            let parts =
-                chain(unit).links().iter().map(|link| (Pose::IDENTITY, part(link))).collect();
-            SharedShape::new(Compound::new(parts))
+        let link = |cap| ModifiedCylinder::new(-half, half, radius, [cap; 2]).unwrap();
+        let compound = |parts: &[SharedShape]| {
+            let placed = parts.iter().map(|part| (Pose::IDENTITY, part.clone())).collect();
+            SharedShape::new(Compound::new(placed))
+        };
+        let capsule =
+            |link: &ModifiedCylinder| SharedShape::capsule(link.start(), link.end(), link.radius());
+        let parts = |part: &dyn Fn(&ModifiedCylinder) -> SharedShape| {
+            compound(&chain(unit).links().iter().map(part).collect::<Vec<_>>())
         };
         match self {
-            Self::RoundLink => {
-                SharedShape::new(ModifiedCylinder::capsule(-half, half, radius).unwrap())
-            }
-            Self::FlatLink => {
-                SharedShape::new(ModifiedCylinder::cylinder(-half, half, radius).unwrap())
-            }
+            Self::RoundLink => SharedShape::new(link(Cap::Round)),
+            Self::FlatLink => SharedShape::new(link(Cap::Flat)),
+            Self::CompoundOfRoundLink => compound(&[SharedShape::new(link(Cap::Round))]),
+            Self::CompoundOfFlatLink => compound(&[SharedShape::new(link(Cap::Flat))]),
+            Self::CompoundOfCapsule => compound(&[capsule(&link(Cap::Round))]),
             Self::Chain => SharedShape::new(chain(unit)),
-            Self::CompoundOfLinks => compound(&|link| SharedShape::new(*link)),
-            Self::CompoundOfCapsules => {
-                compound(&|link| SharedShape::capsule(link.start(), link.end(), link.radius()))
-            }
+            Self::CompoundOfLinks => parts(&|link| SharedShape::new(*link)),
+            Self::CompoundOfCapsules => parts(&capsule),
         }
     }
 
     /// The ends of the body's axis.
     fn ends(self, unit: Real) -> [Vector; 2] {
-        match self {
+        match self.robot() {
             Self::RoundLink | Self::FlatLink => [-1.4, 1.4].map(|z| z * unit * Vector::Z),
             _ => {
                 let chain = chain(unit);
@@ -151,9 +181,19 @@ impl Wall {
         }
     }
 
+    fn is_roof(self) -> bool {
+        matches!(self, Self::Mesh | Self::FlaggedMesh)
+    }
+
+    /// Whether a place is above or below the wall, rather than beside it.
+    fn is_over(self, at: Vector, unit: Real) -> bool {
+        let [x, z] = [at.x.abs() / unit, at.z.abs() / unit];
+        if self.is_roof() { x + z < 9.0 } else { x.max(z) < 7.0 }
+    }
+
     /// A height above which a body has not passed.
     fn lowest(self, at: Vector, unit: Real) -> Real {
-        let slope = if matches!(self, Self::Mesh | Self::FlaggedMesh) { 2.0 / 9.0 } else { 0.0 };
+        let slope = if self.is_roof() { 2.0 / 9.0 } else { 0.0 };
         -slope * at.x.abs() - 0.5 * unit
     }
 }
@@ -211,6 +251,14 @@ impl Outcome {
         self.held as Real / self.moving.max(1) as Real
     }
 
+    /// Returns whether the held steps exceed those of the worst compound by at most 0.1 %, and the
+    /// rise by at most 0.01.
+    pub fn is_no_worse_than(&self, compounds: &[Self]) -> bool {
+        let most = |of: fn(&Self) -> Real| compounds.iter().map(of).fold(0.0, Real::max);
+        self.held_share() <= most(Self::held_share) + 1e-3
+            && self.rise <= most(|outcome| outcome.rise) + 0.01
+    }
+
     /// Adds other throws.
     pub fn add(&mut self, other: &Self) {
         self.throws += other.throws;
@@ -265,18 +313,15 @@ impl Throws {
         let (_, ground) = world.insert(RigidBodyBuilder::fixed(), self.wall.collider(unit));
         // One mass in all units. parry's sum over a compound exchanges the axes of small bodies.
         let density = 1.0 / (unit * unit * unit);
-        let alike = match body {
-            ThrownBody::RoundLink | ThrownBody::FlatLink => body.shape(unit),
-            _ => ThrownBody::Chain.shape(unit),
-        };
-        let mass = alike.mass_properties(density);
+        let robot = body.robot().shape(unit);
+        let mass = robot.mass_properties(density);
         let thrown = RigidBodyBuilder::dynamic()
             .pose(pose)
             .linvel(linvel)
             .angvel(angvel)
             .ccd_enabled(self.ccd);
         let collider = ColliderBuilder::new(body.shape(unit)).mass_properties(mass);
-        let (handle, collider) = world.insert(thrown, collider);
+        let (handle, _) = world.insert(thrown, collider);
         let (ends, dt) = (body.ends(unit), world.integration_parameters.dt);
         let weight = mass.mass() * 9.81 * unit * unit;
         let mut outcome = Outcome { throws: 1, ..Default::default() };
@@ -291,7 +336,7 @@ impl Throws {
                 outcome.asleep.push(step);
                 break;
             }
-            if after.translation.x.abs().max(after.translation.z.abs()) > 7.0 * unit {
+            if !self.wall.is_over(after.translation, unit) {
                 break;
             }
             if after.translation.y < self.wall.lowest(after.translation, unit) {
@@ -311,10 +356,11 @@ impl Throws {
                 body.kinetic_energy() + body.gravitational_potential_energy(0.0, world.gravity);
             least = least.min(energy);
             outcome.rise = outcome.rise.max((energy - least) / weight);
-            let [wall, shape] = [ground, collider].map(|one| &world.colliders[one]);
-            let pos12 = wall.position().inv_mul(shape.position());
+            // parry's `contact` of a half-space and a compound of capsules mirrors the place.
+            let wall = &world.colliders[ground];
+            let pos12 = wall.position().inv_mul(&after);
             let contact =
-                ContinuumDispatcher::default().contact(&pos12, wall.shape(), shape.shape(), 0.0);
+                ContinuumDispatcher::default().contact(&pos12, wall.shape(), &*robot, 0.0);
             let depth = contact.unwrap().map_or(0.0, |contact| -contact.dist / (RADIUS * unit));
             outcome.depth = outcome.depth.max(depth);
         }
