@@ -39,7 +39,8 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, length, rotation_by};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
-/// A rigid frame that carries a robot for an interval of time: [`Motion::common_frame`].
+/// A rigid frame that carries a robot for an interval of time:
+/// [`Motion::common_frame`](crate::Motion::common_frame).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommonFrame {
     /// a: the place in the middle of the interval of the point that moves straight.

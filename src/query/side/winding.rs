@@ -15,6 +15,9 @@ use std::f64::consts::PI;
 /// The error allowed for each node, in steradians, in the first attempts.
 const ATTEMPTS: [Real; 3] = [0.1, 0.02, 0.004];
 
+/// The largest error of a node in the last attempt.
+const FINEST: Real = 0.0005;
+
 /// The error allowed for all nodes together in the last attempt: a quarter of what would leave the
 /// side undecided. So only triangles near the point do.
 const LAST_ATTEMPT: Real = 0.25 * PI;
@@ -70,7 +73,7 @@ impl<E: Lane> Winding<'_, E> {
             sum.side()
         };
         let nodes = self.fields.nodes.len() + self.fields.leaves.len();
-        let last = (LAST_ATTEMPT / nodes as Real).min(ATTEMPTS[2]);
+        let last = (LAST_ATTEMPT / nodes as Real).min(FINEST);
         ATTEMPTS.into_iter().chain([last]).find_map(attempt).unwrap_or(Side::Undecided)
     }
 
