@@ -12,6 +12,7 @@ use continuum_demo::anatomy::{Anatomy, no_goal};
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
 use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
 use continuum_demo::figure::{ring, ruler};
+use continuum_demo::lettering::strokes;
 use continuum_demo::picture::{Camera, Picture, SKY, Solid};
 use continuum_demo::{command, steer, timing, ventricle};
 use parry_continuum::Chain;
@@ -113,7 +114,7 @@ fn steer(options: &Options) -> Result<(), String> {
     scene.per_structure(&robots, &mut walls).map_err(text)?;
     print_times(&mut scene, &robots)?;
 
-    let canvas = draw(&mesh, &robots, &walls, &scene, &tightest)?;
+    let canvas = draw(options, &mesh, &robots, &walls, &scene, &tightest)?;
     canvas.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture of step {drawn}: {}", out.display());
     Ok(())
@@ -180,9 +181,10 @@ fn print_times(scene: &mut Scene, robots: &[(&Chain, Pose); 2]) -> Result<(), St
     Ok(())
 }
 
-/// Both robots, their closest points, the closest points of each robot and the wall, and a ring
-/// around the place of least slack.
+/// Both robots, their closest points, the closest points of the tighter one and the wall, and a
+/// ring around the place of least slack.
 fn draw(
+    options: &Options,
     mesh: &TriMesh,
     robots: &[(&Chain, Pose); 2],
     walls: &[StructureProximity],
@@ -228,20 +230,31 @@ fn draw(
         let [x, y] = camera.place(place, [width, height]);
         [x, y + HEAD as f32]
     };
+    // The distance and the margin beside each pair of closest points: of both robots below the
+    // points, of a robot and the wall above them.
+    let between = nearest.witness.on_first.midpoint(nearest.witness.on_second);
+    let text = format!("{:.2} mm apart, margin {} mm", nearest.distance, options.between);
+    let mut labels = vec![(between, 77.0, text)];
+    for wall in walls {
+        let witness = &wall.nearest.witness;
+        let text =
+            format!("{:.2} mm from the wall, margin {} mm", wall.nearest.distance, options.margin);
+        labels.push((witness.on_robot.midpoint(witness.on_mesh), -32.0, text));
+    }
+    for (place, below, text) in labels {
+        let ([x, y], half) = (on_canvas(place), 0.5 * strokes(&text, 19.0).1 + 14.0);
+        let y = y + below;
+        canvas.panel([x - half, y - 29.0, x + half, y + 13.0], 8.0, SKY[0], 0.85);
+        canvas.text(&text, [x, y], Align::Centre, 19.0, INK);
+    }
     let place = match &tightest.between {
-        Between::Robots { nearest, .. } => {
-            nearest.witness.on_first.midpoint(nearest.witness.on_second)
-        }
+        Between::Robots { .. } => between,
         Between::Structure(wall) => {
             wall.nearest.witness.on_robot.midpoint(wall.nearest.witness.on_mesh)
         }
         _ => return Err("the place of least slack is of an unknown kind".into()),
     };
-    let [x, y] = on_canvas(place);
-    ring(&mut canvas, [x, y], 28.0);
-    let label = format!("least slack: {:.3} mm", tightest.slack);
-    canvas.panel([x - 150.0, y + 46.0, x + 150.0, y + 90.0], 8.0, SKY[0], 0.85);
-    canvas.text(&label, [x, y + 77.0], Align::Centre, 21.0, INK);
+    ring(&mut canvas, on_canvas(place), 28.0);
     for (number, (chain, pose)) in robots.iter().enumerate() {
         let [x, y] = on_canvas(pose * chain.links()[0].start());
         canvas.text(&format!("robot {number}"), [x, y - 56.0], Align::Centre, 21.0, INK);
@@ -255,9 +268,8 @@ fn draw(
     );
     let note = format!("least slack (distance less margin): {}", told(scene, tightest).trim());
     canvas.text(&note, [40.0, 100.0], Align::Left, 17.0, INK);
-    let [i, j] = nearest.links;
-    let apart = format!("between the robots: {:.3} mm, at links {i} and {j}", nearest.distance);
-    canvas.text(&apart, [40.0, 132.0], Align::Left, 17.0, INK);
+    let note = "the ring is where the least slack is";
+    canvas.text(note, [40.0, 132.0], Align::Left, 17.0, INK);
     let middle = ends.iter().sum::<Vector>() / ends.len() as Real;
     ruler(&mut canvas, &camera, middle, [width, height], [40.0, SIZE[1] as f32 - 40.0]);
     Ok(canvas)

@@ -285,6 +285,11 @@ fn rules_of_own_parts_are_counted_and_quoted() {
     );
     assert!(rows.iter().map(|row| number(row, 2)).sum::<u32>() > 20, "{page}");
     assert!(rows.iter().all(|row| number(row, 5) == 0), "{page}");
+    // Two bends have no local minimum; all three robots have a distance by arc length.
+    let picture = read("own/docs/self.svg");
+    assert_eq!(picture.matches("local minima: none").count(), 2, "{picture}");
+    assert_eq!(picture.matches("by arc length: ").count(), 3, "{picture}");
+    assert!(!picture.contains("by arc length: none"), "{picture}");
 }
 
 #[test]

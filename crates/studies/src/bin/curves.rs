@@ -511,7 +511,7 @@ fn plot(
     robots: u64,
     path: &Path,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let area = SVGBackend::new(path, (820, 400)).into_drawing_area();
+    let area = SVGBackend::new(path, (900, 400)).into_drawing_area();
     area.fill(&WHITE)?;
     // Every tick has twice the samples of the one before; on the right there is room for names.
     let title = "Noisy samples: fit finds the clearance within 0.1 mm, from_samples soon does not";
@@ -520,7 +520,7 @@ fn plot(
         .margin(14)
         .x_label_area_size(44)
         .y_label_area_size(56)
-        .build_cartesian_2d(-0.3..4.5, -0.05 * robots as f64..1.1 * robots as f64)?;
+        .build_cartesian_2d(-0.3..3.95, -0.05 * robots as f64..1.1 * robots as f64)?;
     chart
         .configure_mesh()
         .x_desc("samples along 80 mm")
@@ -531,10 +531,7 @@ fn plot(
         .disable_x_mesh()
         .x_labels(5)
         .y_labels(5)
-        .x_label_formatter(&|doubled: &f64| match doubled {
-            0.0..=3.0 => format!("{:.0}", FEWEST * doubled.exp2()),
-            _ => String::new(),
-        })
+        .x_label_formatter(&|doubled: &f64| format!("{:.0}", FEWEST * doubled.exp2()))
         .y_label_formatter(&|resolved| format!("{resolved:.0}"))
         .draw()?;
     // At each number of samples the fewest of all its noises.

@@ -1,5 +1,6 @@
 //! Which parts of a robot are compared: this crate's rule beside the planners' rule, which compares
-//! parts more than three radii apart along the robot. Writes the table of `docs/book/robots.md`.
+//! parts more than three radii apart along the robot. Writes the table of `docs/book/robots.md`,
+//! and the picture `docs/self.svg` of the two distances of a robot from itself.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin own_parts
@@ -12,9 +13,11 @@ use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::SelfQuery;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Count what two rules of self-collision miss and what they forbid.
@@ -23,7 +26,7 @@ struct Options {
     /// How many shapes of each robot
     #[arg(long, value_name = "COUNT", default_value_t = 2000)]
     shapes: u64,
-    /// Where book/robots.md is
+    /// Where book/robots.md is, and where the picture goes
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 }
@@ -223,6 +226,102 @@ fn main() -> ExitCode {
     command::run(|my: &Options| {
         let table = table(my)?;
         print!("{table}");
-        quote::in_page(&table, "own_parts", &my.out.join("book/robots.md"))
+        quote::in_page(&table, "own_parts", &my.out.join("book/robots.md"))?;
+        let picture = my.out.join("self.svg");
+        draw(&picture).map_err(|error| format!("cannot draw {} ({error})", picture.display()))
     })
+}
+
+/// The robots of the picture: a name, and the arcs of the centreline, each a length and a turn.
+const DRAWN: [(&str, &[[f64; 2]]); 3] = [
+    ("a gentle bend", &[[60.0, 1.5]]),
+    ("a sharp bend", &[[20.0, 0.0], [17.0, 2.7], [20.0, 0.0]]),
+    ("a hairpin", &[[30.0, 0.0], [25.2, std::f64::consts::PI], [30.0, 0.0]]),
+];
+const DRAWN_RADIUS: f64 = 2.0;
+/// Every fourth joint is a corner of the drawn line: shorter pieces show the pixels.
+const DRAWN_STEP: usize = 4;
+/// The arc length of the picture.
+const APART: f64 = 20.0;
+
+/// Draws where robots are nearest to themselves, by local minima and by arc length.
+fn draw(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    // Per millimetre: places are rounded to whole pixels.
+    const PIXELS: f64 = 12.0;
+    let area = SVGBackend::new(path, (1920, 900)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let title = format!(
+        "How far is a robot from itself? Where it comes back (blue), or {APART} mm further along it (orange)"
+    );
+    let area = area.titled(&title, ("sans-serif", 40))?;
+    for (panel, (name, arcs)) in area.split_evenly((1, 3)).iter().zip(DRAWN) {
+        let robot = bent(arcs)?;
+        let middle = robot.links().iter().map(|link| link.start()).sum::<Vector>()
+            / robot.links().len() as f64;
+        let at = |point: Vector| {
+            let place = (point - middle) * PIXELS;
+            (320 + place.x.round() as i32, 340 - place.y.round() as i32)
+        };
+        let line: Vec<_> = std::iter::once(robot.links()[0].start())
+            .chain(
+                robot
+                    .links()
+                    .iter()
+                    .skip(DRAWN_STEP - 1)
+                    .step_by(DRAWN_STEP)
+                    .map(|link| link.end()),
+            )
+            .map(at)
+            .collect();
+        let width = (2.0 * DRAWN_RADIUS * PIXELS) as u32;
+        panel.draw(&PathElement::new(line.clone(), RGBColor(205, 210, 215).stroke_width(width)))?;
+        panel.draw(&PathElement::new(line, RGBColor(120, 130, 140).stroke_width(2)))?;
+        let mut query = SelfQuery::new();
+        let minimum = query.minimum(&robot)?;
+        let beyond = query.minimum_beyond(&robot, APART)?;
+        let rows = [
+            (
+                "local minima",
+                minimum.map(|it| (it.distance, it.witness)),
+                RGBColor(0, 114, 178),
+                18,
+            ),
+            ("by arc length", beyond.map(|it| (it.upper, it.witness)), RGBColor(213, 94, 0), 6),
+        ];
+        let centred = |size: i32, colour: &RGBColor| {
+            let style = ("sans-serif", size).into_font().color(colour);
+            style.pos(Pos::new(HPos::Center, VPos::Center))
+        };
+        panel.draw(&Text::new(name, (320, 640), centred(36, &BLACK)))?;
+        for (row, (rule, found, colour, thick)) in rows.into_iter().enumerate() {
+            let text = match found {
+                Some((distance, _)) => format!("{rule}: {distance:.1} mm"),
+                None => format!("{rule}: none"),
+            };
+            panel.draw(&Text::new(text, (320, 700 + 50 * row as i32), centred(34, &colour)))?;
+            if let Some((_, witness)) = found {
+                let ends = vec![at(witness.on_first), at(witness.on_second)];
+                panel.draw(&PathElement::new(ends, colour.stroke_width(thick)))?;
+            }
+        }
+    }
+    area.present()?;
+    Ok(())
+}
+
+/// A robot in a plane of arcs of the given lengths and turns.
+fn bent(arcs: &[[f64; 2]]) -> Result<Chain, parry_continuum::RobotError> {
+    const STEPS: u32 = 60;
+    let (mut points, mut direction) = (vec![Vector::ZERO], 0.0_f64);
+    for [length, turn] in arcs {
+        for _ in 0..STEPS {
+            let half = 0.5 * turn / f64::from(STEPS);
+            direction += half;
+            let step = Vector::new(direction.cos(), direction.sin(), 0.0);
+            points.push(points[points.len() - 1] + step * (length / f64::from(STEPS)));
+            direction += half;
+        }
+    }
+    let radii = vec![DRAWN_RADIUS; points.len() - 1];
+    Chain::from_centreline(&points, &radii)
 }

@@ -88,7 +88,7 @@ pub fn draw() -> Canvas {
     let cells: Vec<_> =
         (0..CELLS * CELLS).into_par_iter().map(|cell| errors(cell % CELLS, cell / CELLS)).collect();
     let panel = CELLS * CELL;
-    let (left, top, between) = (150, 176, 150);
+    let (left, top, between) = (170, 176, 170);
     let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 330, |_, _| PAPER);
     let worst = [0, 1].map(|which| cells.iter().map(|cell| cell[which]).fold(0.0, f64::max));
     let title = format!(
@@ -96,10 +96,10 @@ pub fn draw() -> Canvas {
         worst[0], worst[1]
     );
     canvas.text(&title, [left as f32, 54.0], Align::Left, 27.0, INK);
-    let scene = "a cylinder 0.5 mm thick and 10 mm long beside a triangle; each point is one query";
+    let scene = "each point is the distance of a cylinder, 0.5 mm thick and 10 mm long, and a triangle; dark is right, yellow is wrong";
     canvas.text(scene, [left as f32, 92.0], Align::Left, 19.0, PALE);
     let scale = Scale::new(cells.iter().flatten().copied());
-    for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
+    for (which, name) in ["parry (GJK)", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);
         let picture = Canvas::new(panel, panel, |x, y| {
             scale.shade(cells[x / CELL + y / CELL * CELLS][which])
@@ -107,7 +107,8 @@ pub fn draw() -> Canvas {
         canvas.paste(&picture, [x, top], 0.0);
         let frame = [x as f32, top as f32, (x + panel) as f32, (top + panel) as f32];
         canvas.frame(frame, 0.0, 2.0, INK);
-        canvas.text(name, [frame[0], frame[1] - 20.0], Align::Left, 22.0, INK);
+        let name = format!("{name}: at worst {:.0e} of the clearance", worst[which]);
+        canvas.text(&name, [frame[0], frame[1] - 20.0], Align::Left, 22.0, INK);
         ticks(&mut canvas, frame);
     }
     let foot = (top + panel + 150) as f32;
@@ -131,7 +132,7 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4]) {
         canvas.text(&format!("1e{power}"), [x, y1 + 34.0], Align::Centre, 17.0, INK);
     }
     canvas.text(
-        "gap before the triangle tilts, m",
+        "gap of cylinder and level triangle, m",
         [0.5 * (x0 + x1), y1 + 72.0],
         Align::Centre,
         19.0,
@@ -144,7 +145,7 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4]) {
     }
     // Between two ticks.
     let y = 0.5 * (y0 + y1) - (y1 - y0) / 8.0;
-    for (line, text) in ["tilt,", "m per m"].into_iter().enumerate() {
+    for (line, text) in ["slope of", "the triangle"].into_iter().enumerate() {
         let at = [x0 - 16.0, y - 6.0 + 28.0 * line as f32];
         canvas.text(text, at, Align::Right, 19.0, PALE);
     }

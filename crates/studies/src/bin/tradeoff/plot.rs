@@ -3,13 +3,14 @@
 use crate::front::{Combination, front};
 use crate::subject::Model;
 use plotters::coord::Shift;
+use plotters::coord::combinators::WithKeyPoints;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::fs;
 use std::path::Path;
 
 type Log = LogCoord<f64>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Log, Log>>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<WithKeyPoints<Log>, Log>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (1000, 680);
@@ -93,6 +94,8 @@ fn marks(
             .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)))
     };
     let ((fast, slow), (good, bad)) = (range(|at| at.0), range(|at| at.1));
+    let ticks = (-6..9).flat_map(|power| [1.0, 2.0, 5.0].map(|x| x * 10.0_f64.powi(power)));
+    let ticks = ticks.filter(|tick| (fast * 0.35..slow * 1.8).contains(tick)).collect();
     let mut chart = ChartBuilder::on(area)
         .caption("What accuracy costs: the fastest query for each error", ("sans-serif", 22))
         .margin(16)
@@ -100,7 +103,7 @@ fn marks(
         .y_label_area_size(72)
         // Room for the labels on the left, and for the legend below the points.
         .build_cartesian_2d(
-            (fast * 0.35..slow * 1.8).log_scale(),
+            (fast * 0.35..slow * 1.8).log_scale().with_key_points(ticks),
             (good * 0.2..bad * 2.0).log_scale(),
         )?;
     chart
@@ -108,8 +111,7 @@ fn marks(
         .x_desc("microseconds for the clearance of the whole robot (median)")
         .y_desc("worst error of the clearance, mm")
         .label_style(("sans-serif", 14))
-        .x_labels(20)
-        .x_label_formatter(&|x| round_number(*x))
+        .x_label_formatter(&|x| number(*x))
         .y_label_formatter(&|y| number(*y))
         .disable_mesh()
         .draw()?;
@@ -179,13 +181,6 @@ fn square(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
 
 fn triangle(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
     polygon(at, colour, 3, 0.0, 7.0)
-}
-
-/// 1, 2 or 5 times a power of ten; other ticks have no number.
-fn round_number(x: f64) -> String {
-    let mantissa = x / 10.0_f64.powf(x.log10().floor());
-    let is_round = [1.0, 2.0, 5.0, 10.0].iter().any(|round| (mantissa - round).abs() < 1e-9);
-    if is_round { number(x) } else { String::new() }
 }
 
 /// A number without needless digits.
