@@ -100,6 +100,12 @@ pub enum SceneError {
          `per_structure`"
     )]
     NoMargin,
+    /// The margin of moving robots to themselves is by arc length.
+    #[error(
+        "the margin of robots to themselves is by arc length, which motions do not have; remove the scene's arc length, or ask \
+         `clears` or `clears_tube` about shapes on the way"
+    )]
+    SelfArcOfMotion,
     /// Two structures would have the same name.
     #[error("structure {structure} has the name `{name}` too; give each structure its own name")]
     NameTaken {
@@ -148,6 +154,7 @@ impl SceneError {
             | Self::BetweenRobots(error)
             | Self::Query(error) => error.kind(),
             Self::NoMargin => "no_margin",
+            Self::SelfArcOfMotion => "self_arc_of_motion",
             Self::NameTaken { .. } => "name_taken",
             Self::NotSolid { .. } => "not_solid",
             Self::NoSuchStructure { .. } => "no_such_structure",

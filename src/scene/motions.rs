@@ -94,6 +94,7 @@ impl Scene {
     /// # Errors
     /// A contact that is found is reported instead of an error, before or after it.
     /// - Nothing in the scene has a margin.
+    /// - The margin of robots to themselves is by [arc length](Self::set_self_arc).
     /// - The resolution is negative or NaN.
     /// - A motion has no shape at some time, its sections change, or a stated speed is not finite.
     ///   The message has the robot's number, as for the next two.
@@ -301,6 +302,10 @@ impl Scene {
         sought: Sought,
     ) -> Result<SceneMotionAnswer, SceneError> {
         self.check_has_margin()?;
+        // A motion states how fast places move, and not how its arc lengths change.
+        if self.self_margin.and(self.self_arc).is_some() {
+            return Err(SceneError::SelfArcOfMotion);
+        }
         check_not_negative("resolution", resolution).map_err(SceneError::Query)?;
         self.bounds()?;
         let mut moving = Vec::with_capacity(ends.len());

@@ -110,6 +110,8 @@ pub struct Scene {
     all: Option<SceneBounds>,
     pub(super) robot_margin: Option<Real>,
     pub(super) self_margin: Option<Real>,
+    /// Which places the margin of a robot to itself is about; `None`: the local minima.
+    pub(super) self_arc: Option<Real>,
     /// Pairs of nested robots, the lower number first.
     pub(super) nested: Vec<[usize; 2]>,
     pub(super) pair: RobotPair,
@@ -326,13 +328,47 @@ impl Scene {
     ///
     /// [`clears`](Self::clears), [`clears_tube`](Self::clears_tube) and
     /// [`clears_motion`](Self::clears_motion) test it. Which parts of a robot count is as for
-    /// [`SelfQuery`]. The least slack of [`tightest`](Self::tightest) does not include it.
+    /// [`SelfQuery`]: the local minima, or all places by [arc length](Self::set_self_arc). The least
+    /// slack of [`tightest`](Self::tightest) does not include it.
     ///
     /// # Errors
     /// The margin is negative or NaN.
     pub fn set_self_margin(&mut self, margin: Option<Real>) -> Result<(), SceneError> {
         check(margin).map_err(SceneError::Query)?;
         self.self_margin = margin;
+        Ok(())
+    }
+
+    /// Sets between which places of a robot the [margin to itself](Self::set_self_margin) applies:
+    /// places at least `arc` apart along the centreline, as for [`SelfQuery::clears_beyond`]. With
+    /// `None`, the default, between local minima, as for [`SelfQuery::clears`].
+    ///
+    /// `arc` is a length, larger than the margin: a distance by arc length is at most `arc`. A robot
+    /// shorter than `arc` keeps every margin. [`clears_motion`](Self::clears_motion) and
+    /// [`time_of_contact`](Self::time_of_contact) have the local minima only.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, parry::math::{Pose, Vector}, proximity::Scene};
+    ///
+    /// // A bend with a radius of 10. It has no local minimum.
+    /// let angles = (0..=120).map(|k| f64::from(k).to_radians());
+    /// let points: Vec<_> = angles.map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 10.0).collect();
+    /// let robot = Chain::from_centreline(&points, &[2.0; 120])?;
+    /// let mut scene = Scene::new();
+    /// scene.set_self_margin(Some(9.0))?;
+    /// assert!(scene.clears(&[(&robot, Pose::IDENTITY)])?);
+    /// scene.set_self_arc(Some(12.0))?; // the inner edges are 16 sin(0.6) = 9.03 apart
+    /// assert!(scene.clears(&[(&robot, Pose::IDENTITY)])?);
+    /// scene.set_self_arc(Some(11.0))?; // 16 sin(0.55) = 8.36
+    /// assert!(!scene.clears(&[(&robot, Pose::IDENTITY)])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// `arc` is negative or NaN.
+    pub fn set_self_arc(&mut self, arc: Option<Real>) -> Result<(), SceneError> {
+        check_not_negative("arc", arc.unwrap_or(0.0)).map_err(SceneError::Query)?;
+        self.self_arc = arc;
         Ok(())
     }
 
@@ -358,8 +394,8 @@ impl Scene {
     /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
     ///   robot's number.
     /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
-    /// - A margin of robots to themselves is set, and a joint is too sharp for
-    ///   [`SelfQuery::clears`].
+    /// - A margin of robots to themselves is set, without an arc length, and a joint is too sharp
+    ///   for [`SelfQuery::clears`].
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
         self.check_has_margin()?;
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
@@ -376,7 +412,11 @@ impl Scene {
         }
         let Some(margin) = self.self_margin else { return Ok(true) };
         for (robot, (chain, _)) in robots.iter().enumerate() {
-            if !self.itself.clears(chain, margin).map_err(of_robot(robot))? {
+            let clears = match self.self_arc {
+                None => self.itself.clears(chain, margin),
+                Some(arc) => self.itself.clears_beyond(chain, arc, margin),
+            };
+            if !clears.map_err(of_robot(robot))? {
                 return Ok(false);
             }
         }

@@ -50,7 +50,8 @@ impl Scene {
     /// - A pose is not finite or not rigid, or moves its tube out of range. The message has the
     ///   robot's number.
     /// - [`set_vertices`](Self::set_vertices) has opened the mesh of a solid structure.
-    /// - The robots have a margin to themselves, and a tube bends within its radius.
+    /// - The robots have a margin to themselves, without an [arc length](Self::set_self_arc), and a
+    ///   tube bends within its radius.
     /// - Samples do not allow a decision at that resolution, or a curve is not finite somewhere.
     pub fn clears_tube(
         &mut self,
@@ -88,7 +89,10 @@ impl Scene {
         }
         if let Some(margin) = self.self_margin {
             for (robot, (tube, _)) in tubes.iter().enumerate() {
-                let answer = self.itself.clears_tube(tube, margin, resolution);
+                let answer = match self.self_arc {
+                    None => self.itself.clears_tube(tube, margin, resolution),
+                    Some(arc) => self.itself.clears_tube_beyond(tube, arc, margin, resolution),
+                };
                 if found.ends_with(answer.map_err(of_robot(robot))) {
                     return Ok(Decision::Contact);
                 }

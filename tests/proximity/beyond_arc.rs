@@ -4,8 +4,8 @@
 use continuum_testing::{Random, rounds};
 use parry_continuum::distance::{Vec3, disc_disc};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, RobotClearance, SelfQuery};
-use parry_continuum::{Cap, Chain, RobotError, Tube};
+use parry_continuum::proximity::{Decision, RobotClearance, Scene, SceneError, SelfQuery};
+use parry_continuum::{Cap, Chain, LinearMotion, RobotError, Tube};
 use std::f64::consts::PI;
 
 /// A cross-section: its place, centre, direction and radius.
@@ -388,5 +388,47 @@ fn numbers_that_are_no_lengths_are_refused() {
         assert!(itself.clearance_beyond(&tube, wrong, 1.0).is_err());
         assert!(itself.clearance_beyond(&tube, 1.0, wrong).is_err());
         assert!(itself.clears_tube_beyond(&tube, 0.5, 1.0, wrong).is_err());
+    }
+}
+
+/// Of an arc of radius R by discs of radius r: the inner edges are 2 (R - r) sin(arc / 2 R) apart.
+#[test]
+fn a_scene_keeps_a_margin_by_arc_length() {
+    let angles = (0..=150).map(|k| f64::from(k).to_radians());
+    let points: Vec<_> = angles.map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 10.0).collect();
+    let bent = Chain::from_centreline(&points, &[2.0; 150]).unwrap();
+    let straight = Chain::from_centreline(&[Vector::ZERO, Vector::X * 9.0], &[0.5]).unwrap();
+    let away = Pose::translation(0.0, 50.0, 0.0);
+    let robots = [(&straight, Pose::IDENTITY), (&bent, away)];
+    let tubes = [Tube::from(&straight), Tube::from(&bent)];
+    let tubes = [(&tubes[0], Pose::IDENTITY), (&tubes[1], away)];
+    let mut scene = Scene::new();
+    for arc in [10.0, 14.0, 25.0] {
+        // A straight robot that is shorter than `arc` keeps every margin.
+        let expected = 16.0 * (0.05_f64 * arc).sin();
+        for (margin, decision) in
+            [(0.99 * expected, Decision::Clear), (1.01 * expected, Decision::Contact)]
+        {
+            scene.set_self_margin(Some(margin)).unwrap();
+            scene.set_self_arc(Some(arc)).unwrap();
+            assert_eq!(scene.clears(&robots), Ok(decision == Decision::Clear), "{arc}");
+            assert_eq!(scene.clears_tube(&tubes, 1e-3), Ok(decision), "{arc}");
+            // Without the arc length: the bend has no local minimum.
+            scene.set_self_arc(None).unwrap();
+            assert_eq!(scene.clears(&robots), Ok(true));
+        }
+    }
+    let motion = LinearMotion::capsules(&points, &points, &[2.0; 150]).unwrap();
+    scene.set_self_arc(Some(20.0)).unwrap();
+    let refused = Err(SceneError::SelfArcOfMotion);
+    assert_eq!(scene.clears_motion(&[&motion], 0.1), refused);
+    assert_eq!(scene.time_of_contact(&[&motion], 0.1), refused);
+    assert_eq!(scene.clearance_of_motion(&[&motion], 0.1), Ok(None));
+    scene.set_self_margin(None).unwrap();
+    scene.set_robot_margin(Some(1.0)).unwrap();
+    assert!(scene.clears_motion(&[&motion], 0.1).unwrap().is_clear());
+    for wrong in [-1.0, f64::NAN] {
+        let error = scene.set_self_arc(Some(wrong)).unwrap_err();
+        assert!(error.to_string().contains("arc"), "{error}");
     }
 }

@@ -195,6 +195,7 @@ SCALARS = {
     "turn": [lambda x: MESH.clearance(ONE, 0.1, tolerance=0.1, turn=x)],
     "reach": [lambda x: SCENE.contacts_within([(ONE, 0.1)], reach=x)],
     "robot_margin": [lambda x: Scene(robot_margin=x)],
+    "self_arc": [lambda x: Scene(self_arc=x)],
     "scale": [lambda x: load("wall.stl", scale=x)],
 }
 

@@ -183,3 +183,22 @@ def test_a_copy_keeps_the_margin_of_robots_to_themselves() -> None:
         moved = LinearMotion(hairpin, hairpin, 0.2, caps="capsules")
         assert one.clears_motion([moved], resolution=1e-3).robots.tolist() == [0, 0]
     assert Scene(self_margin=0.5).clears([(hairpin, 0.2)], caps="capsules") is True
+
+
+def test_a_margin_to_themselves_by_arc_length() -> None:
+    # Inner edges of an arc of radius 10 by discs of radius 2 are 16 sin(arc / 20) apart.
+    angle = np.radians(np.arange(151))
+    bend = np.stack([10 * np.cos(angle), 0 * angle, 10 * np.sin(angle)], axis=1)
+    expected = 16 * np.sin(0.7)
+    for margin, clears in [(0.99 * expected, True), (1.01 * expected, False)]:
+        asked = Scene(self_margin=margin, self_arc=14.0)
+        for one in (asked, copy.copy(asked), copy.deepcopy(asked), pickle.loads(pickle.dumps(asked))):
+            assert one.clears([(bend, 2.0)]) is clears
+            assert one.clears_tube([(bend, 2.0)], resolution=1e-3).is_clear is clears
+        assert Scene(self_margin=margin).clears([(bend, 2.0)]) is True
+    with pytest.raises(ContinuumError) as refused:
+        asked.clears_motion([LinearMotion(bend, bend, 2.0)], resolution=1e-3)
+    assert refused.value.kind == "self_arc_of_motion"
+    for wrong in (-1.0, np.nan):
+        with pytest.raises(ContinuumError, match="self_arc"):
+            Scene(self_margin=1.0, self_arc=wrong)

@@ -43,9 +43,10 @@ def scene(
     nested: Sequence[tuple[int, int]],
     structures: Sequence[tuple[Any, ...]],
     self_margin: Optional[float] = None,
+    self_arc: Optional[float] = None,
 ) -> Scene:
     """A scene with its structures."""
-    made = Scene(robot_margin=robot_margin, self_margin=self_margin, nested=nested)
+    made = Scene(robot_margin=robot_margin, self_margin=self_margin, self_arc=self_arc, nested=nested)
     for name, mesh, margin, pose, solid, margins_between in structures:
         number = made.add(name, mesh, margin=margin, pose=pose, solid=solid)
         for robot, between in margins_between:

@@ -343,6 +343,7 @@ class Scene:
         *,
         robot_margin: float | None = None,
         self_margin: float | None = None,
+        self_arc: float | None = None,
         nested: Sequence[tuple[int, int]] = (),
     ) -> Scene: ...
     def add(

@@ -204,7 +204,7 @@ pub(crate) mod of {
     pub(crate) mod optional {
         use pyo3::prelude::*;
 
-        optional_numbers!(margin, robot_margin, self_margin, turn, turn_a, turn_b);
+        optional_numbers!(margin, robot_margin, self_arc, self_margin, turn, turn_a, turn_b);
 
         pub(crate) fn label(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
             if given.is_none() {

@@ -40,6 +40,10 @@ use std::sync::Arc;
 /// self_margin : float, optional
 ///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube`
 ///     and `clears_motion` test it.
+/// self_arc : float, optional
+///     With it, `self_margin` is the distance of places at least `self_arc` apart along the robot, as
+///     for `SelfQuery.clears_beyond`. Without it, `self_margin` is the distance of parts that come
+///     near each other, as for `SelfQuery.clears`. Motions need the latter.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
 ///     robots touch, and the scene does not compare them with one another. The numbers are the
@@ -48,7 +52,7 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// ContinuumError
-///     The margin is negative or NaN, or a robot is nested in itself.
+///     A margin or `self_arc` is negative or NaN, or a robot is nested in itself.
 ///
 /// Examples
 /// --------
@@ -65,6 +69,7 @@ pub(crate) struct Scene {
     structures: Held<Vec<Structure>>,
     robot_margin: Option<f64>,
     self_margin: Option<f64>,
+    self_arc: Option<f64>,
     nested: Vec<[usize; 2]>,
     /// Whether it has warned of robots in different frames.
     has_warned: HasWarned,
@@ -150,6 +155,7 @@ impl Scene {
             structures: engines.collect(),
             robot_margin: self.robot_margin,
             self_margin: self.self_margin,
+            self_arc: self.self_arc,
             nested: self.nested.clone(),
         }
     }
@@ -158,19 +164,22 @@ impl Scene {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (*, robot_margin = None, self_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, self_margin=None, nested=())")]
+    #[pyo3(signature = (*, robot_margin = None, self_margin = None, self_arc = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, self_margin=None, self_arc=None, nested=())")]
     fn new(
         py: Python<'_>,
         #[pyo3(from_py_with = of::optional::robot_margin)] robot_margin: Option<f64>,
         #[pyo3(from_py_with = of::optional::self_margin)] self_margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::self_arc)] self_arc: Option<f64>,
         #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
     ) -> PyResult<Self> {
         check_length(py, "robot_margin", robot_margin)?;
         check_length(py, "self_margin", self_margin)?;
+        check_length(py, "self_arc", self_arc)?;
         Ok(Self {
             structures: Held::new(Vec::new()),
             robot_margin,
             self_margin,
+            self_arc,
             nested,
             has_warned: HasWarned::default(),
             has_warned_of_robots: HasWarned::default(),
@@ -323,6 +332,7 @@ impl Scene {
             structures: Held::new(structures),
             robot_margin: self.robot_margin,
             self_margin: self.self_margin,
+            self_arc: self.self_arc,
             nested: self.nested.clone(),
             has_warned: HasWarned::default(),
             has_warned_of_robots: HasWarned::default(),
@@ -351,7 +361,7 @@ impl Scene {
         let structures = structures.collect::<PyResult<Vec<_>>>()?;
         let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
         let arguments =
-            (self.robot_margin, nested, structures, self.self_margin).into_pyobject(py)?;
+            (self.robot_margin, nested, structures, self.self_margin, self.self_arc).into_pyobject(py)?;
         Ok((make, arguments.into_any()))
     }
 

@@ -28,6 +28,7 @@ pub(super) struct Snapshot {
     pub(super) structures: Vec<(Structure, Arc<Engine>)>,
     pub(super) robot_margin: Option<f64>,
     pub(super) self_margin: Option<f64>,
+    pub(super) self_arc: Option<f64>,
     pub(super) nested: Vec<[usize; 2]>,
 }
 
@@ -61,6 +62,7 @@ impl Lender for Snapshot {
             }
             scene.set_nested(&self.nested);
             scene.set_self_margin(self.self_margin)?;
+            scene.set_self_arc(self.self_arc)?;
             Ok(scene.set_robot_margin(self.robot_margin)?)
         };
         build().map_err(|refused| refused.raise(py, None))?;
