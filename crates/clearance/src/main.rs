@@ -17,6 +17,7 @@ mod number;
 mod options;
 mod outputs;
 mod plot;
+mod plot_pixels;
 mod proof;
 mod report;
 mod robot;

@@ -4,7 +4,7 @@ use crate::messages;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use mesh_files::Frame;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Which way x and y point.
 #[derive(Clone, Copy, ValueEnum)]
@@ -98,8 +98,8 @@ pub struct Options {
     /// this far apart. --margin and --prove are then about the curve
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = positive)]
     pub tolerance: Option<f64>,
-    /// Draw the clearance along the robot into an SVG file
-    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(svg))]
+    /// Draw the clearance along the robot into an SVG or PNG file
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
     pub plot: Option<PathBuf>,
     /// Write a CSV file with a line for each link, or for each shape of --shapes
     #[arg(long, value_name = "FILE")]
@@ -158,14 +158,18 @@ fn positive(text: &str) -> Result<f64, &'static str> {
     number.ok_or("write a number greater than 0, with a point for decimals")
 }
 
-fn svg(path: PathBuf) -> Result<PathBuf, &'static str> {
-    let is_svg = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("svg"));
-    if is_svg { Ok(path) } else { Err("write a name that ends in .svg") }
+fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
+    let is_known = has_ending(&path, "svg") || has_ending(&path, "png");
+    if is_known { Ok(path) } else { Err("write a name that ends in .svg or .png") }
+}
+
+/// Whether a file name has this ending, in any case.
+pub fn has_ending(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case(wanted))
 }
 
 fn proof(path: PathBuf) -> Result<PathBuf, &'static str> {
-    let is_mesh = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj"));
-    if path.file_stem().is_none() || is_mesh {
+    if path.file_stem().is_none() || has_ending(&path, "obj") {
         Err("write the name of a file, such as proof.txt; the mesh is written beside it as .obj")
     } else {
         Ok(path)

@@ -44,8 +44,8 @@ pub fn mesh_path(proof: &Path) -> PathBuf {
 }
 
 /// Writes a file for this option.
-pub fn write(option: &str, path: &Path, text: &str) -> Result<(), String> {
-    fs::write(path, text).map_err(|error| {
+pub fn write(option: &str, path: &Path, contents: impl AsRef<[u8]>) -> Result<(), String> {
+    fs::write(path, contents).map_err(|error| {
         format!("cannot write {} ({error}); choose another {option}", path.display())
     })
 }

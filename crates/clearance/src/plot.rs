@@ -1,4 +1,4 @@
-//! The plot of the clearance along the robot, as SVG.
+//! The plot of the clearance along the robot, as SVG or PNG.
 //!
 //! # Algorithm
 //! 1. Divide the segments into about [`SLICES`] slices with flat ends, and measure each. A slice is
@@ -8,11 +8,14 @@
 //!    margin are orange.
 
 use crate::number::{as_written, length, short};
+use crate::options::has_ending;
+use crate::plot_pixels::Pixels;
 use crate::robot::Robot;
 use crate::verdict::Verdict;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity};
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
@@ -49,9 +52,20 @@ impl Plot<'_> {
         unit: Option<&str>,
     ) -> Result<(), String> {
         let curve = self.curve(search).map_err(|error| error.to_string())?;
-        let mut text = String::new();
-        self.chart(&curve, unit, &mut text).map_err(|error| error.to_string())?;
-        crate::outputs::write("--plot", path, &text)
+        let text = |error: Box<dyn Error>| error.to_string();
+        if has_ending(path, "png") {
+            let mut canvas = Pixels::canvas(SIZE);
+            let area = Pixels(&mut canvas).into_drawing_area();
+            self.chart(&curve, unit, &area).map_err(text)?;
+            drop(area);
+            let file = canvas.png().map_err(|error| error.to_string())?;
+            return crate::outputs::write("--plot", path, file);
+        }
+        let mut file = String::new();
+        let area = SVGBackend::with_string(&mut file, SIZE).into_drawing_area();
+        self.chart(&curve, unit, &area).map_err(text)?;
+        drop(area);
+        crate::outputs::write("--plot", path, file)
     }
 
     /// Returns arc lengths and distances, in order (steps 1 and 2).
@@ -82,11 +96,11 @@ impl Plot<'_> {
     }
 
     /// Draws the chart (step 3).
-    fn chart(
+    fn chart<B: DrawingBackend<ErrorType: 'static>>(
         &self,
         curve: &[(f64, f64)],
         unit: Option<&str>,
-        text: &mut String,
+        area: &DrawingArea<B, Shift>,
     ) -> Result<(), Box<dyn Error>> {
         let at = (self.minimum.witness.arc_length, self.minimum.distance);
         let whole = total(&self.robot.points);
@@ -94,7 +108,6 @@ impl Plot<'_> {
         let high = if highest > 0.0 { 1.1 * highest } else { 1.0 };
         let in_unit = unit.map(|unit| format!(" ({unit})")).unwrap_or_default();
 
-        let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let closest = format!(
             "closest to the wall {} from the base: {}",
@@ -108,7 +121,7 @@ impl Plot<'_> {
             }
             None => format!("The robot is {closest}"),
         };
-        let mut chart = ChartBuilder::on(&area)
+        let mut chart = ChartBuilder::on(area)
             .caption(title, ("sans-serif", 24))
             .margin(16)
             .x_label_area_size(52)
@@ -156,7 +169,6 @@ impl Plot<'_> {
         });
         chart.draw_series([label(at, text, BLACK, at.1 < 0.1 * high)])?;
         area.present()?;
-        drop(chart);
         Ok(())
     }
 }

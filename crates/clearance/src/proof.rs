@@ -10,8 +10,8 @@ const CHECKER: &str = "docs/book/check_proof.py";
 /// Writes the proof and its mesh, and returns the command that checks them.
 pub fn write(path: &Path, proof: &Proof, search: &BvhSearch) -> Result<String, String> {
     let mesh = outputs::mesh_path(path);
-    outputs::write("--prove", &mesh, &mesh_files::to_obj(search.vertices(), search.triangles()))?;
-    outputs::write("--prove", path, &proof.to_string())?;
+    outputs::write("--prove", &mesh, mesh_files::to_obj(search.vertices(), search.triangles()))?;
+    outputs::write("--prove", path, proof.to_string())?;
     let words = [checker().as_path(), &mesh, path].map(quoted);
     Ok(format!("python3 {}", words.join(" ")))
 }

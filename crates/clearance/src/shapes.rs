@@ -35,7 +35,7 @@ pub fn answer(
         format!("shape,{},error,inside\n", csv::COLUMNS) + &lines.collect::<String>()
     };
     if let Some(path) = &my.csv {
-        outputs::write("--csv", path, &table())?;
+        outputs::write("--csv", path, table())?;
     }
     wall.notes.iter().for_each(|note| outputs::tell("note", note));
     let verdict = my.margin.map(|margin| verdict(margin, &answers, wall));

@@ -49,7 +49,7 @@ pub fn answer(
         verdict.map(|margin| Verdict::new(margin, minimum.distance, curve.as_ref().map(|c| &c.1)));
 
     if let Some(path) = &my.csv {
-        outputs::write("--csv", path, &csv::links(&links))?;
+        outputs::write("--csv", path, csv::links(&links))?;
     }
     if let Some(path) = &my.plot {
         let bounds = curve.as_ref().map(|curve| [curve.1.lower, curve.1.upper]);

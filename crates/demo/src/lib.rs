@@ -11,8 +11,6 @@
 
 #[cfg(feature = "command")]
 pub mod anatomy;
-#[cfg(feature = "pictures")]
-pub mod canvas;
 pub mod cavity;
 #[cfg(feature = "pictures")]
 pub mod colour_map;
@@ -23,8 +21,6 @@ pub mod field;
 #[cfg(feature = "pictures")]
 pub mod figure;
 pub mod joint_motion;
-#[cfg(feature = "pictures")]
-pub mod lettering;
 pub mod levels;
 pub mod lumen;
 #[cfg(feature = "pictures")]
@@ -42,3 +38,6 @@ pub mod ticks;
 pub mod timing;
 pub mod torsion;
 pub mod ventricle;
+
+#[cfg(feature = "pictures")]
+pub use continuum_pictures::{canvas, lettering};

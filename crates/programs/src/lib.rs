@@ -104,9 +104,14 @@ pub fn assert_finite(text: &str) {
 
 /// Returns the number of colours of a picture.
 pub fn colours(name: &str) -> usize {
+    pixels(name).1.into_iter().collect::<BTreeSet<_>>().len()
+}
+
+/// Returns width, height and the pixels of a picture, row by row.
+pub fn pixels(name: &str) -> ([usize; 2], Vec<[u8; 3]>) {
     let file = std::fs::File::open(place(name)).unwrap();
     let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut pixels).unwrap();
-    pixels.as_chunks::<3>().0.iter().collect::<BTreeSet<_>>().len()
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut bytes).unwrap();
+    ([frame.width as usize, frame.height as usize], bytes.as_chunks::<3>().0.to_vec())
 }

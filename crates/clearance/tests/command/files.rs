@@ -1,7 +1,7 @@
 //! The files that the command writes: `--csv`, `--plot` and `--prove`.
 
 use crate::{refuse, run, succeed};
-use continuum_programs::{file, place, read, room};
+use continuum_programs::{file, pixels, place, read, room};
 use std::process::Command;
 
 /// A box of 60, and a needle of two radii: 20 from both ends, 28 and 29 from the sides.
@@ -72,9 +72,30 @@ fn a_plot_shows_the_clearance_along_the_robot() {
     let scale = (low - high) / 9.0;
     let step = middle.iter().fold(f64::MIN, |low, &y| low.max(y)) - high;
     assert!((step - scale).abs() < 0.35 * scale, "{step} {scale}");
+    // The same picture in pixels: both have the line of the margin in orange, the curve in blue.
+    succeed(&[
+        "--mesh",
+        wall,
+        "--centreline",
+        shape,
+        "--margin",
+        "12.5",
+        "--plot",
+        "clearance.PNG",
+    ]);
+    let (size, pixels) = pixels("clearance.PNG");
+    assert_eq!(size, [1800, 960]);
+    // The dashes are 8 of 13; the letters of the margin have the same colour.
+    let wide = 2 * (last.0 - first.0) as usize;
+    for (colour, least, most) in
+        [([0, 114, 178], 3 * wide, 6 * wide), ([213, 94, 0], 2 * wide, 4 * wide)]
+    {
+        let count = pixels.iter().filter(|pixel| **pixel == colour).count();
+        assert!((least..most).contains(&count), "{colour:?}: {count}, {wide} wide");
+    }
     refuse(
-        &["--mesh", wall, "--centreline", shape, "--plot", "clearance.png"],
-        "write a name that ends in .svg",
+        &["--mesh", wall, "--centreline", shape, "--plot", "clearance.pdf"],
+        "write a name that ends in .svg or .png",
     );
 }
 
@@ -235,5 +256,5 @@ fn any_name_of_a_file_is_taken() {
     let broken = file("broken\nname.csv", "30,zero,20\n");
     refuse(&["--mesh", wall, "--centreline", &broken], "broken\\nname.csv");
     refuse(&["--mesh", "no\nwall.obj", "--centreline", shape], "no\\nwall.obj");
-    refuse(&["--mesh", wall, "--centreline", shape, "--plot", "no\nplot.png"], "ends in .svg");
+    refuse(&["--mesh", wall, "--centreline", shape, "--plot", "no\nplot.pdf"], "ends in .svg");
 }

@@ -149,8 +149,16 @@ impl Canvas {
     /// # Errors
     /// The file cannot be written.
     pub fn save(&self, path: &Path) -> io::Result<()> {
-        let file = io::BufWriter::new(std::fs::File::create(path)?);
-        let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
+        std::fs::write(path, self.png()?)
+    }
+
+    /// The picture as a PNG file.
+    ///
+    /// # Errors
+    /// The picture has no pixels.
+    pub fn png(&self) -> io::Result<Vec<u8>> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -158,7 +166,8 @@ impl Canvas {
         let bytes: Vec<u8> = self.pixels.iter().flatten().map(encode).collect();
         let mut writer = encoder.write_header().map_err(io::Error::other)?;
         writer.write_image_data(&bytes).map_err(io::Error::other)?;
-        writer.finish().map_err(io::Error::other)
+        writer.finish().map_err(io::Error::other)?;
+        Ok(file)
     }
 }
 
