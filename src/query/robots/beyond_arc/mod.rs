@@ -25,7 +25,8 @@
 //! 2. Measure some places that are `arc` apart: the first upper bound.
 //! 3. Take the pair of parts with the least lower bound ([`measure`]). Stop if it reaches the least
 //!    upper bound.
-//! 4. Divide one of the two parts. Two straight links are measured exactly instead ([`polish`]).
+//! 4. Divide both parts, or one if the other is a leaf. Two straight links are measured exactly
+//!    instead ([`polish`]).
 //!
 //! # Correctness
 //! Each pair of places belongs to a pair in the queue or to one whose lower bound was at least the
@@ -265,6 +266,16 @@ impl<'a> BeyondArc<'a> {
             }
             return Ok(true);
         }
+        if i != j
+            && let (Some(of_one), Some(of_two)) = (one.children, two.children)
+        {
+            for first in of_one {
+                for second in of_two {
+                    self.offer([first, second], pair.lower);
+                }
+            }
+            return Ok(true);
+        }
         let by_size = |part: &parts::Part| (part.loss(), part.length());
         let first = if by_size(one) >= by_size(two) { 0 } else { 1 };
         for k in [first, 1 - first] {
@@ -290,7 +301,9 @@ impl<'a> BeyondArc<'a> {
     /// places that are `arc` apart.
     fn offer(&mut self, parts: [u32; 2], of_parent: Real) {
         let pair = parts.map(|part| self.parts.part(part));
-        let Some((lower, places)) = measure(pair, self.arc, self.upper) else { return };
+        // With such a bound the pair is never divided.
+        let enough = self.upper - 2.0 * self.parts.slack - self.tolerance;
+        let Some((lower, places)) = measure(pair, self.arc, enough) else { return };
         if let Some(places) = places {
             self.take(parts, places);
         }

@@ -45,7 +45,7 @@ pub(super) struct Part {
     pub caps: [Option<Vector>; 2],
     /// For a leaf, the piece of the tube, or the link with the ticks 0 and 1.
     pub piece: Piece,
-    children: Option<[u32; 2]>,
+    pub children: Option<[u32; 2]>,
 }
 
 impl Part {
