@@ -27,11 +27,15 @@
 //! So a [`StartContact::Skin`] cast ignores the link's outermost layer, its *skin*:
 //!
 //! 1. The link without its skin is cast, if that is clear at the start by half of the skin.
-//! 2. Otherwise the core is cast.
+//! 2. Otherwise the core is cast, if its radius exceeds half of the skin. A link whose axis is
+//!    nearer to the wall has passed through.
 //!
-//! **Claim.** No place holds a link for two steps. **Proof.** A cast in case 1 stops only after the
-//! link has come nearer by half of the skin, and the next step has case 2. A cast in case 2 stops
-//! only after half of the room is used.
+//! **Claim.** While the solver does not push a link away from a wall, casts against that wall stop
+//! it in at most six steps. **Proof.** A cast in case 1 stops only after the link has come nearer
+//! by half of the skin, and the next step has case 2. Where a cast in case 2 stops, the inside of
+//! the axis is as far from the wall as the core's radius, which is at most half of the radius, and
+//! half of what that distance was before. So the sixth core has at most 1 / 64 of the radius, less
+//! than half of [`SKIN`].
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -190,18 +194,19 @@ impl Cast<'_> {
         if start == StartContact::Stops {
             return Ok(Some(now.hit(ShapeCastStatus::PenetratingOrWithinTargetDist)));
         }
-        let Some(core) = self.core(link, now.touching)? else { return Ok(None) };
+        // The iterations cannot resolve a core thinner than what counts as touching.
+        let thinnest = (2.0 * now.touching).max(0.5 * skin);
+        let Some(core) = self.core(link, thinnest)? else { return Ok(None) };
         let now = self.at(self.start_time, &core)?;
         self.advance(&core, now)
     }
 
-    /// Returns the core of a link that touches the wall at the start; `None` if the link has passed
-    /// through. The room must exceed what counts as touching for the whole link, because the
-    /// iterations cannot resolve a thinner core.
+    /// Returns the core of a link that touches the wall at the start; `None` if its radius is at
+    /// most `thinnest`: the link has passed through.
     fn core(
         &self,
         link: &ModifiedCylinder,
-        touching: Real,
+        thinnest: Real,
     ) -> Result<Option<ModifiedCylinder>, Unsupported> {
         let inset = link.radius().min(0.25 * link.length());
         let trimmed = [0, 1].map(|end| match link.caps()[end] {
@@ -213,7 +218,7 @@ impl Cast<'_> {
         };
         let start = self.at(self.start_time, &capsule(0.0)?)?;
         let radius = 0.5 * start.distance.min(link.radius());
-        if radius > 2.0 * touching { capsule(radius).map(Some) } else { Ok(None) }
+        if radius > thinnest { capsule(radius).map(Some) } else { Ok(None) }
     }
 
     /// Steps 1 to 3: returns the first hit from `start` on.

@@ -102,3 +102,34 @@ fn only_sweeps_of_fast_bodies_ignore_the_skin() {
         assert!((time(dispatcher, stop) - expected).abs() < 1e-8, "{stop} {expected}");
     }
 }
+
+/// A link deep in a wall that nothing pushes out is stopped by six sweeps at most, however slowly it
+/// sinks in. Then it falls on, as parry's capsules do.
+#[test]
+fn sweeps_do_not_hold_a_link_for_long() {
+    let dispatcher = WorldDispatcher::default();
+    let wall = continuum_testing::throws::roof(1.0);
+    let still = NonlinearRigidMotion::identity();
+    for caps in [[Cap::Flat; 2], [Cap::Round; 2]] {
+        let link = ModifiedCylinder::new(-Vector::Z, Vector::Z, 0.1, caps).unwrap();
+        // The ridge is along z at the height 0.
+        for (height, speed) in [(0.2, 1.0), (0.11, 1.0), (0.1, 0.3), (0.05, 0.1), (0.01, 10.0)] {
+            let mut falls = NonlinearRigidMotion {
+                start: Pose::from_translation(height * Vector::Y),
+                linvel: -speed * Vector::Y,
+                ..NonlinearRigidMotion::identity()
+            };
+            let mut stops = 0;
+            for _ in 0..60 {
+                let hit = dispatcher
+                    .cast_shapes_nonlinear(&falls, &link, &still, &wall, 0.0, 1.0, false)
+                    .unwrap();
+                stops += usize::from(hit.is_some());
+                let share = hit.map_or(1.0, |hit| hit.time_of_impact);
+                falls.start.translation += falls.linvel * share;
+            }
+            assert!((1..=6).contains(&stops) || height < 0.05, "{height}: {stops}");
+            assert!(stops <= 6 && falls.start.translation.y < -1.0, "{height}: {stops}");
+        }
+    }
+}
