@@ -240,6 +240,7 @@ pub fn sharp_turns(points: &[[f64; 3]]) -> Option<String> {
     let first = *turns.first()?;
     let others = match turns.len() {
         1 => String::new(),
+        2 => ", and at one other point".to_owned(),
         count => format!(", and at {} other points", count - 1),
     };
     Some(format!(

@@ -51,7 +51,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 ///     states the other frame is turned, as by `load`: a `Mesh`, or one of pyvista whose field data
 ///     has an array ``SPACE``, as 3D Slicer writes it. Without ``frame`` the mesh keeps its own.
 /// unit : str, optional
-///     The unit of the vertices, such as "mm". Nothing is computed from it.
+///     The unit of the vertices, such as "mm". Nothing is computed from it. trimesh's `units`
+///     is not taken over.
 /// device : {"cpu", "gpu"}
 ///     What answers large batches. "gpu" needs a released wheel, or a build with the feature
 ///     ``gpu``, and a GPU: see `gpu_available`. ``Mesh(mesh, device="gpu")`` is the same mesh on

@@ -463,7 +463,7 @@ def test_wrong_types(ask: Any, error: type[Exception], text: str, tmp_path: Path
 def test_mistakes_in_a_table_are_said(tmp_path: Path) -> None:
     file = tmp_path / "robot.csv"
     for text, expected in [
-        ("0,0,0\n0,0,2\n0,0,1\n0,0,3\n", "turns by more than 90 degrees at point 1, and at 1 other"),
+        ("0,0,0\n0,0,2\n0,0,1\n0,0,3\n", "turns by more than 90 degrees at point 1, and at one other"),
         ("foo_x,foo_y,foo_z\n0,0,0\n0,0,1\n", "'foo_x', 'foo_y' and 'foo_z' are read as the position"),
         ("0,5,5,2\n1,5,6,3\n2,5,7,4\n", "the first column counts the lines"),
     ]:
@@ -483,6 +483,6 @@ def test_a_margin_and_the_order_of_points_are_doubted() -> None:
     (doubt,) = wall.doubts(line, 0.5, margin=0.002)
     assert doubt.startswith("the margin 0.002 is small beside the mesh's box, which measures 34.")
     (doubt,) = wall.doubts(line[[0, 2, 1, 3]], 0.5)
-    assert doubt.startswith("the robot turns by more than 90 degrees at point 1, and at 1 other points")
+    assert doubt.startswith("the robot turns by more than 90 degrees at point 1, and at one other point")
     (doubt,) = wall.doubts(np.stack([line, line[[0, 2, 3, 1]]]), 0.5)
     assert doubt.startswith("robot 1: the robot turns by more than 90 degrees at point 2;")

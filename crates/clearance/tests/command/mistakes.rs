@@ -11,7 +11,7 @@ fn mistakes_in_the_file_of_a_robot_are_named() {
         (
             "order.csv",
             "30,30,20,2\n30,30,40,2\n30,30,30,2\n30,30,45\n",
-            "the robot turns by more than 90 degrees at point 1, and at 1 other points; check",
+            "the robot turns by more than 90 degrees at point 1, and at one other point; check",
         ),
         (
             "names.csv",

@@ -174,7 +174,7 @@ fn points_out_of_order_are_doubted_and_bends_are_not() {
     }
     assert!(found[0] == 400 && found[1] > 60, "{found:?}");
     let zigzag = [[0.0; 3], [5.0, 0.0, 0.0], [0.0, 1.0, 0.0], [5.0, 2.0, 0.0]];
-    let expected = "the robot turns by more than 90 degrees at point 1, and at 1 other points; \
+    let expected = "the robot turns by more than 90 degrees at point 1, and at one other point; \
                     check the order of the points, and whether they are of one robot";
     assert_eq!(sharp_turns(&zigzag).as_deref(), Some(expected));
     // A right angle is none. Points at one place have no direction.
