@@ -18,7 +18,7 @@ use parry3d_f64::shape::Shape;
 /// A [`ContinuumDispatcher`] for the narrow phase of a rapier world.
 ///
 /// Its answers are those of the dispatcher inside, except for `cast_shapes_nonlinear` that does not
-/// stop at the start: rapier's sweep of a fast body. It ignores the outermost layer of a link, 1 %
+/// stop at the start: rapier's sweep of a fast body. It ignores the outermost layer of a link, 5 %
 /// of its radius. A solver lets bodies overlap by its allowed error; an exact sweep would hold them
 /// there, step after step, in the air.
 ///
