@@ -41,7 +41,7 @@ public:
     bool isValid(const ob::State* state) const override {
         // A motion that rests is the shape itself, as a smooth curve.
         const MotionAnswer found = mesh_.clears_motion(motion(state, state), margin, resolution);
-        return si_->satisfiesBounds(state) && found.decision == PC_CLEAR;
+        return si_->satisfiesBounds(state) && found.decision == Decision::Clear;
     }
 
 private:
@@ -54,14 +54,14 @@ public:
         : ob::MotionValidator(space), mesh_(mesh) {}
     bool checkMotion(const ob::State* start, const ob::State* end) const override {
         const bool clears =
-            mesh_.clears_motion(motion(start, end), margin, resolution).decision == PC_CLEAR;
+            mesh_.clears_motion(motion(start, end), margin, resolution).decision == Decision::Clear;
         ++(clears ? valid_ : invalid_);
         return clears;
     }
     bool checkMotion(const ob::State* start, const ob::State* end,
                      std::pair<ob::State*, double>& last) const override {
         const MotionAnswer found = mesh_.time_of_contact(motion(start, end), margin, resolution);
-        if (found.decision == PC_CLEAR)
+        if (found.decision == Decision::Clear)
             return true;
         // The margin is kept until here.
         last.second = found.interval[0];
@@ -128,12 +128,12 @@ int main() {
         const Motion edge_motion = motion(a, b);
         const MotionAnswer found = mesh.clears_motion(edge_motion, 0, resolution);
         const bool keeps =
-            mesh.clears_motion(edge_motion, margin, resolution).decision == PC_CLEAR;
+            mesh.clears_motion(edge_motion, margin, resolution).decision == Decision::Clear;
         const bool accepts = discrete.checkMotion(a, b);
         accepted += accepts;
         proven += keeps;
-        touch += accepts && found.decision == PC_CONTACT;
-        undecided += accepts && found.decision == PC_UNDECIDED;
+        touch += accepts && found.decision == Decision::Contact;
+        undecided += accepts && found.decision == Decision::Undecided;
         refused_wrongly += keeps && !accepts;
     }
     information->freeState(a);

@@ -40,6 +40,13 @@ using SceneMotionAnswer = pc_scene_motion_answer;
 using Surface = pc_surface;
 
 enum class Decision { Contact = PC_CONTACT, Undecided = PC_UNDECIDED, Clear = PC_CLEAR };
+// Answers of motions and of batches have the numbers of C: `found.decision == Decision::Clear`.
+constexpr bool operator==(pc_decision number, Decision decision) noexcept {
+    return number == static_cast<pc_decision>(decision);
+}
+constexpr bool operator!=(pc_decision number, Decision decision) noexcept {
+    return !(number == decision);
+}
 enum class Side { Inside = PC_INSIDE, Undecided = PC_UNDECIDED_SIDE, Outside = PC_OUTSIDE };
 enum class Caps : std::uint32_t {
     Fitted = PC_CAPS_FITTED,
@@ -562,7 +569,7 @@ public:
                                                tolerance, answers, statuses);
             });
     }
-    /// The items of `answers` are `PC_CLEAR`, `PC_CONTACT` or `PC_UNDECIDED`.
+    /// The items of `answers` compare with `Decision`.
     Batch<pc_decision> clears_tube_batch(const std::vector<const Tube*>& tubes, double margin,
                                          double resolution, const std::vector<Pose>& poses = {}) {
         return detail::batch<pc_decision>(

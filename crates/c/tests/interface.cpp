@@ -105,8 +105,8 @@ int main(int, char** argv) {
 
     // Motions.
     const Motion rigid = Motion::rigid(robot, Pose(), pose);
-    IS_TRUE(clone.clears_motion(rigid, 1, 0.01).decision == PC_CLEAR);
-    IS_TRUE(clone.clears_motion(Motion::rigid(tube, pose, Pose()), 1, 0.01).decision == PC_CLEAR);
+    IS_TRUE(clone.clears_motion(rigid, 1, 0.01).decision == Decision::Clear);
+    IS_TRUE(clone.clears_motion(Motion::rigid(tube, pose, Pose()), 1, 0.01).decision == Decision::Clear);
     const std::vector<double> straight{3, 0, 0}, bent{3, 0.1, 0};
     const Motion bending = Motion::bending(straight, bent, 0.2, pose);
     const Motion back = Motion::bending(bent, straight, 0.2, pose);
@@ -115,9 +115,9 @@ int main(int, char** argv) {
     const auto least = clone.clearance_of_motion(path, 0.01);
     IS_TRUE(least.lower <= 1 && 1 <= least.upper);
     IS_TRUE(clone.clearance_of_motion(Motion::moving_base(path, Pose(), pose), 0.01).resolved);
-    IS_TRUE(clone.clears_motion_batch({&rigid, &path}, 0.5, 0.01).answers[1].decision == PC_CLEAR);
-    IS_TRUE(clone.clears_motion_while(floor, rigid, 1, 0.01).decision == PC_CLEAR);
-    IS_TRUE(clone.clears_path({&robot, &robot}, 0, 1, 0.01).decision == PC_CLEAR);
+    IS_TRUE(clone.clears_motion_batch({&rigid, &path}, 0.5, 0.01).answers[1].decision == Decision::Clear);
+    IS_TRUE(clone.clears_motion_while(floor, rigid, 1, 0.01).decision == Decision::Clear);
+    IS_TRUE(clone.clears_path({&robot, &robot}, 0, 1, 0.01).decision == Decision::Clear);
     IS_TRUE(kind_of([&] { Motion::path({}); }) == "no_motions");
 
     // Two robots, one and itself, several meshes.
@@ -130,18 +130,18 @@ int main(int, char** argv) {
     IS_TRUE(pair.clears_tubes(tube, beside, 3, 0.01) == Decision::Clear);
     IS_TRUE(pair.clearance(tube, beside, 0.01).upper <= 4.01);
     const Motion at_rest = Motion::rigid(other, Pose(), Pose());
-    IS_TRUE(pair.clears_motions(rigid, at_rest, 3, 0.01).decision == PC_CLEAR);
-    IS_TRUE(pair.time_of_contact(rigid, at_rest, 5, 0.01).decision == PC_CONTACT);
+    IS_TRUE(pair.clears_motions(rigid, at_rest, 3, 0.01).decision == Decision::Clear);
+    IS_TRUE(pair.time_of_contact(rigid, at_rest, 5, 0.01).decision == Decision::Contact);
     IS_TRUE(pair.clearance_of_motion(rigid, at_rest, 0.01).upper >= 4);
     const auto nearest = pair.minimum_batch({&robot, &robot}, {&other, &other}, {}, {Pose(), pose});
     IS_TRUE(nearest.answers[0].distance == 4 && nearest.answers[1].distance == 4);
     const auto apart = pair.clears_motions_batch({&rigid}, {&at_rest}, 3, 0.01);
-    IS_TRUE(apart.answers[0].decision == PC_CLEAR);
+    IS_TRUE(apart.answers[0].decision == Decision::Clear);
     IS_TRUE(kind_of([&] { pair.clears_batch({&robot}, {}, 1); }) == "bad_length");
     SelfQuery alone;
     IS_TRUE(alone.minimum(robot).distance == INFINITY && alone.clears(robot, 1));
     IS_TRUE(alone.clears_tube(tube, 0.1, 0.01) == Decision::Clear);
-    IS_TRUE(alone.clears_motion(rigid, 0.1, 0.01).decision == PC_CLEAR);
+    IS_TRUE(alone.clears_motion(rigid, 0.1, 0.01).decision == Decision::Clear);
     Scene scene(0.1);
     const std::size_t structure = scene.add("floor", clone, 1);
     IS_TRUE(scene.clears({&robot, &other}) && scene.tightest({&robot}).slack == 0.5);
@@ -149,10 +149,10 @@ int main(int, char** argv) {
     IS_TRUE(!scene.contacts_within({&robot}, 2).empty());
     IS_TRUE(scene.clears_tube({&tube}, 0.01) == Decision::Clear);
     IS_TRUE(scene.clearance({&tube}, 0.01).upper <= 0.51);
-    IS_TRUE(scene.clears_motion({&rigid}, 0.01).decision == PC_CLEAR);
+    IS_TRUE(scene.clears_motion({&rigid}, 0.01).decision == Decision::Clear);
     IS_TRUE(scene.clearance_of_motion({&rigid}, 0.01).resolved);
     scene.set_margin(structure, 2);
-    IS_TRUE(scene.time_of_contact({&rigid}, 0.01).decision == PC_CONTACT);
+    IS_TRUE(scene.time_of_contact({&rigid}, 0.01).decision == Decision::Contact);
     scene.set_pose(structure, pose);
     IS_TRUE(scene.tightest({&robot}).slack == -1.5);
     scene.set_vertices(structure, floor);
@@ -165,7 +165,7 @@ int main(int, char** argv) {
     IS_TRUE(kind_of([&] { scene.add("floor", clone, 1); }) == "name_taken");
     IS_TRUE(kind_of([&] { scene.clears_batch({&robot}, 2); }) == "bad_length");
     const auto at = StructureEnd::pose(structure, pose.matrix());
-    IS_TRUE(scene.clears_motion_while({at}, {&rigid}, 0.01).decision == PC_CLEAR);
+    IS_TRUE(scene.clears_motion_while({at}, {&rigid}, 0.01).decision == Decision::Clear);
 
     // Files.
     IS_TRUE(kind_of([&] { Mesh::load("no such file.stl"); }) == "file");
