@@ -148,6 +148,8 @@ struct BeyondArc<'a> {
     tolerance: Real,
     /// An upper bound on the distance.
     upper: Real,
+    /// The least lower bound of the pairs that need not or cannot be divided.
+    settled: Real,
     best: Option<([u32; 2], NearPlaces)>,
 }
 
@@ -164,6 +166,7 @@ impl<'a> BeyondArc<'a> {
             arc: (arc * parts.scale - parts.arc_slack).max(0.0),
             tolerance: tolerance * parts.scale,
             upper: Real::INFINITY,
+            settled: Real::INFINITY,
             best: None,
             parts,
             pairs,
@@ -201,11 +204,9 @@ impl<'a> BeyondArc<'a> {
         }
         self.offer([self.parts.root(); 2], 0.0);
         let (slack, uncertainty) = (self.parts.slack, self.uncertainty() * self.parts.scale);
-        // The least lower bound of the pairs that cannot be divided.
-        let mut undivided = Real::INFINITY;
         let mut examined = 0;
         while let Some(pair) = self.pairs.pop() {
-            let lower = undivided.min(pair.lower).min(self.upper);
+            let lower = self.settled.min(pair.lower).min(self.upper);
             let is_decided =
                 margin.is_some_and(|margin| lower - slack > margin || self.upper_bound() <= margin);
             let is_near = pair.lower + self.tolerance + uncertainty + 2.0 * slack >= self.upper;
@@ -213,11 +214,11 @@ impl<'a> BeyondArc<'a> {
                 return Ok(lower);
             }
             if !self.divide(pair)? {
-                undivided = undivided.min(pair.lower);
+                self.settled = self.settled.min(pair.lower);
             }
             examined += usize::from(self.tube.is_some());
         }
-        Ok(self.upper.min(undivided))
+        Ok(self.upper.min(self.settled))
     }
 
     /// Returns by how much the bounds differ because the tube states errors.
@@ -297,18 +298,20 @@ impl<'a> BeyondArc<'a> {
         Ok(false)
     }
 
-    /// Adds a pair to the queue, unless its lower bound exceeds the upper bound or it has no two
-    /// places that are `arc` apart.
+    /// Adds a pair to the queue, unless its lower bound is good enough or it has no two places that
+    /// are `arc` apart.
     fn offer(&mut self, parts: [u32; 2], of_parent: Real) {
         let pair = parts.map(|part| self.parts.part(part));
-        // With such a bound the pair is never divided.
+        // The query's bounds need not be nearer.
         let enough = self.upper - 2.0 * self.parts.slack - self.tolerance;
         let Some((lower, places)) = measure(pair, self.arc, enough) else { return };
         if let Some(places) = places {
             self.take(parts, places);
         }
-        if lower <= self.upper {
-            let lower = lower.max(of_parent);
+        let lower = lower.max(of_parent);
+        if lower >= enough {
+            self.settled = self.settled.min(lower);
+        } else {
             self.pairs.push(Pair { lower, parts, is_polished: false });
         }
     }

@@ -215,10 +215,8 @@ pub(super) fn polish(
 ) -> Option<(Real, NearPlaces)> {
     let domain = Domain::new(parts, arc)?;
     let [one, two] = parts;
-    let bisector = (one.direction + two.direction).normalize_or_zero();
-    lower = lower.max(domain.lower(parts, bisector));
     let (shares, _) = domain.shortest(parts, arc);
-    let mut best = near_places(parts, shares);
+    let mut best = NearPlaces { distance: Real::INFINITY, shares, points: [Vector::ZERO; 2] };
     let mut offer = |distance: Real, shares: [Real; 2], points: [Vector; 2]| -> (bool, Vector) {
         let n = (points[1] - points[0]).normalize_or_zero();
         lower = lower.max(domain.lower(parts, n));
@@ -258,6 +256,8 @@ pub(super) fn polish(
         let shares = [whole[0].share_of(points[0]), whole[1].share_of(points[1])];
         let is_beyond = !domain.is_cut || two.arc(shares[1]) - one.arc(shares[0]) >= arc;
         offer(if is_beyond { nearest.distance } else { Real::INFINITY }, shares, points);
+        let bisector = (one.direction + two.direction).normalize_or_zero();
+        lower = lower.max(domain.lower(parts, bisector));
     }
     Some((lower, best))
 }
