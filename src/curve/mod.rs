@@ -270,6 +270,12 @@ impl Tube {
         self.curve.at_share(section, share)
     }
 
+    /// Whether the curve is a function.
+    #[cfg(feature = "robots")]
+    pub(crate) fn is_function(&self) -> bool {
+        matches!(self.curve, Curve::Function(_))
+    }
+
     /// Returns the shares of the two samples around a share of a section; `None` if the curve is a
     /// function.
     pub(crate) fn samples_around(&self, section: &Section, share: Real) -> Option<[Real; 2]> {

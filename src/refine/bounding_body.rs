@@ -55,6 +55,20 @@
 //!    The body is then longer than A + m, and b / (A + m) <= m. The back moves sideways by less
 //!    than a slack.
 //!
+//! ## Runs of pieces
+//! **Claim.** Let a and b be the ends of a run of pieces along the tube, c = |b - a|, and L the
+//! length of the curve between them. Each of its points is at most h = sqrt(L^2 - c^2) / 2 from the
+//! segment between a and b. So the capsule of the radius h + the largest radius contains all balls
+//! of the tube's radius in the run, and so all discs.
+//!
+//! **Proof.** Let p be a point of the curve: |p - a| + |p - b| <= L. If its foot is within the
+//! segment, at the distance g, the sum is at least sqrt(c^2 + 4 g^2), so g <= h. If p is beyond b,
+//! |p - a|^2 >= |p - b|^2 + c^2, so |p - b| <= (L^2 - c^2) / (2 L) = 2 h^2 / L <= h.
+//!
+//! **Rounding.** The arc length of a section errs by less than 8 u reach, which is slack / 16, and
+//! so does the gap at a joint: the segments that a chain drops. The ends err by less than slack /
+//! 8. So L is at most the difference of the arc lengths + slack (1 + sections / 8).
+//!
 //! ## Errors
 //! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
 //! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
@@ -75,6 +89,11 @@ use std::f64::consts::FRAC_PI_2;
 
 /// How many cores are tried for a body that overlaps a triangle or another body.
 pub(super) const MOST_CORES: u32 = 4;
+
+/// A run is nearly straight if its curve is at most this share of its chord beside the chord: an
+/// arc of .9 rad. (1/4 to 1/32 take the same time.)
+#[cfg(feature = "robots")]
+const MOST_BESIDE: Real = 1.0 / 8.0;
 
 /// A convex body around a piece.
 #[derive(Clone, Copy, Debug)]
@@ -234,6 +253,34 @@ impl PlacedTube<'_> {
         }
         // Case 1 or 2.
         self.along_chord(section, piece, &known, length, exposed)
+    }
+
+    /// Returns the ends and the radius of a capsule around the tube from one piece to a later one
+    /// (section "Runs of pieces"); `None` if the curve between them is not nearly straight.
+    #[cfg(feature = "robots")]
+    pub(super) fn around_run(&self, [first, last]: [&Piece; 2]) -> Option<([Vector; 2], Real)> {
+        let [from, to] = [first, last].map(|piece| self.section(piece.section));
+        let ends = [self.point(from, first.from), self.point(to, last.to)];
+        let chord = (ends[1] - ends[0]).length();
+        let along = self.tube.arc(to, last.to) - self.tube.arc(from, first.from);
+        // A cheap first test.
+        if along > (1.0 + 2.0 * MOST_BESIDE * MOST_BESIDE) * chord {
+            return None;
+        }
+        let (mut radius, mut stretch, mut off): (Real, Real, Real) = (0.0, 1.0, 0.0);
+        for number in first.section..=last.section {
+            let section = self.section(number);
+            let from = if number == first.section { first.from } else { section.first };
+            let to = if number == last.section { last.to } else { section.last };
+            radius = radius.max(section.radius);
+            stretch = stretch.max(section.stretch);
+            off = off.max(self.tube.bound(section, [from, to]).off);
+        }
+        let count = Real::from(last.section - first.section);
+        let length = along * stretch + (1.0 + 0.125 * count) * self.slack;
+        let beside = 0.5 * ((length - chord).max(0.0).sqrt() * (length + chord).sqrt());
+        let wider = radius + off + self.tube.error() + self.slack;
+        (beside <= MOST_BESIDE * chord).then_some((ends, beside + wider))
     }
 
     fn along_chord(

@@ -246,7 +246,7 @@ impl<'a> PlacedTube<'a> {
 }
 
 /// A piece of one section, between two ticks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Piece {
     pub section: u32,
     pub from: u32,
@@ -302,48 +302,68 @@ impl PlacedTube<'_> {
 
     /// Fills `pieces` with the initial pieces. A stack takes the last one first.
     ///
-    /// 1. The pieces near faces come first, so they are processed last. They cost most, and an
-    ///    upper bound from the other pieces prunes most of them.
-    /// 2. The other pieces deviate from their chords by about `coarse`, at most
-    ///    [`MAX_INITIAL_PIECES`] per section.
+    /// The pieces near faces come first, so they are processed last. They cost most, and an upper
+    /// bound from the other pieces prunes most of them.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
+        let sections = (0..self.sections().len() as u32).rev();
         pieces.clear();
-        for number in (0..self.sections().len() as u32).rev() {
-            let [from, to] = self.between_faces(number);
-            let section = self.section(number);
-            let faces = [[section.first, from], [to, section.last]];
-            for [from, to] in faces.into_iter().filter(|[from, to]| from < to) {
-                pieces.push(Piece { section: number, from, to });
-            }
+        for number in sections.clone() {
+            let [first, _, last] = self.ranges(number);
+            pieces.extend([first, last].into_iter().flatten());
         }
-        for number in (0..self.sections().len() as u32).rev() {
-            let section = self.section(number);
-            let [from, to] = self.between_faces(number);
-            if from >= to {
-                continue;
-            }
-            let arcs = [from, to].map(|tick| self.tube.arc(section, tick));
-            let length = arcs[1] - arcs[0];
+        for number in sections {
+            let [_, middle, _] = self.ranges(number);
+            pieces.extend(middle.into_iter().flat_map(|middle| self.divided(middle, coarse).rev()));
+        }
+    }
+
+    /// Appends the initial pieces in their order along the tube.
+    #[cfg(feature = "robots")]
+    pub(super) fn begin_along(&self, coarse: Real, mut push: impl FnMut(Piece)) {
+        for number in 0..self.sections().len() as u32 {
+            let [first, middle, last] = self.ranges(number);
+            first.into_iter().for_each(&mut push);
+            middle.into_iter().flat_map(|middle| self.divided(middle, coarse)).for_each(&mut push);
+            last.into_iter().for_each(&mut push);
+        }
+    }
+
+    /// Returns the range of a section that is clear of its faces, between the ranges at its faces.
+    pub(crate) fn ranges(&self, number: u32) -> [Option<Piece>; 3] {
+        let section = self.section(number);
+        let [from, to] = self.between_faces(number);
+        [[section.first, from], [from, to], [to, section.last]]
+            .map(|[from, to]| (from < to).then_some(Piece { section: number, from, to }))
+    }
+
+    /// Returns the parts of a piece that deviate from their chords by about `coarse`, at most
+    /// [`MAX_INITIAL_PIECES`].
+    fn divided(
+        &self,
+        piece: Piece,
+        coarse: Real,
+    ) -> impl DoubleEndedIterator<Item = Piece> + use<> {
+        let Piece { section, from, to } = piece;
+        let count = if to - from == 1 {
+            1
+        } else {
+            let [start, end] = self.arcs(&piece);
             // The deviation is k l^2 / 8, and no piece turns by more than 1 rad: l <= 1 / k.
-            let curvature = section.mean_curvature;
+            let curvature = self.section(section).mean_curvature;
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // The cast saturates, and NaN becomes 0.
-            let count =
-                ((length / longest).ceil() as u32).clamp(1, MAX_INITIAL_PIECES).min(to - from);
-            let tick = |k: u32| {
-                (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32
-            };
-            pieces.extend((0..count).rev().map(|k| Piece {
-                section: number,
-                from: tick(k),
-                to: tick(k + 1),
-            }));
-        }
+            let count = ((end - start) / longest).ceil() as u32;
+            count.clamp(1, MAX_INITIAL_PIECES).min(to - from)
+        };
+        let tick = move |k: u32| {
+            (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32
+        };
+        (0..count).map(move |k| Piece { section, from: tick(k), to: tick(k + 1) })
     }
 
     /// Returns the ticks of the range of a section that is clear of its faces. The ticks are equal
     /// if no range is clear.
-    pub(crate) fn between_faces(&self, number: u32) -> [u32; 2] {
+    fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let [first, last] = self.faces(section).map(|face| face.is_some());
         let room = [0, 1].map(|end| ROOM * section.room(end));

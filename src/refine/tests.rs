@@ -123,6 +123,56 @@ fn bodies_hold_their_pieces() {
     );
 }
 
+/// The capsule of a run of pieces contains the balls along the curve between its ends, over joints
+/// and steps in radius. A nearly straight run has one; arcs give a tight one.
+#[test]
+#[cfg(feature = "robots")]
+fn capsules_of_runs_hold_the_curve() {
+    let mut random = Random::new(5);
+    let (mut checked, mut long, mut tight) = (0, 0, 0);
+    for _ in 0..600 {
+        let arcs = Arc::new(random_arcs(&mut random));
+        for tube in tubes(&mut random, &arcs) {
+            let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 0.0).unwrap();
+            let mut pieces = Vec::new();
+            placed.begin_along(0.02, |piece| pieces.push(piece));
+            for _ in 0..6 {
+                let from = random.below(pieces.len() as u32) as usize;
+                let count = 1 + random.below((pieces.len() - from) as u32) as usize;
+                let [first, last] = [from, from + count - 1].map(|place| &pieces[place]);
+                let Some((ends, radius)) = placed.around_run([first, last]) else { continue };
+                let arc = |section: u32, tick| true_arc(&arcs, &tube, section as usize, tick);
+                let between = [arc(first.section, first.from), arc(last.section, last.to)];
+                let sections = first.section..=last.section;
+                for k in 0..=60 {
+                    let at = between[0] + (between[1] - between[0]) * Real::from(k) / 60.0;
+                    let own = |number: u32| {
+                        let section = &tube.sections()[number as usize];
+                        let range = [section.first, section.last].map(|tick| arc(number, tick));
+                        let is_here = (range[0]..=range[1]).contains(&at);
+                        if is_here { section.radius } else { 0.0 }
+                    };
+                    let radius_here = sections.clone().map(own).fold(0.0, Real::max);
+                    let [start, end] = ends.map(Vec3::from);
+                    let place = Vec3::from(arcs.at(at).0);
+                    let beside =
+                        point_modified_cylinder(place, start, end, 0.0, [false; 2]).distance;
+                    assert!(
+                        beside + radius_here <= radius + 1e-9,
+                        "{beside} + {radius_here} > {radius}: {first:?} {last:?}"
+                    );
+                    checked += 1;
+                }
+                long += usize::from(first.section != last.section);
+                let widest = placed.widest();
+                let length = between[1] - between[0];
+                tight += usize::from(radius < widest + 0.16 * length);
+            }
+        }
+    }
+    assert!(checked > 100_000 && long > 300 && tight > 1_000, "{checked} {long} {tight}");
+}
+
 /// Returns the distance of a point from a section: from its discs, and from the half balls beyond
 /// the discs at round ends. The other half of such a ball may stick out of the section's own face:
 /// it is no part of the tube.

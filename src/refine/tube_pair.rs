@@ -19,13 +19,14 @@
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
-use super::capsule_tree::{CapsuleTree, NearPairs, WaitingRuns, pays};
+use super::capsule_tree::{CapsuleTree, NearPairs, Parts, WaitingRuns, pays};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable, UpperBound};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::pair::{NearestOfLinks, PlacedLink};
 use parry3d_f64::math::{Real, Vector};
+use std::ops::Range;
 
 /// How often y is moved.
 const MAX_MOVES: u32 = 4;
@@ -45,6 +46,8 @@ pub(crate) struct TubePair<'a> {
 pub(crate) struct PiecePair {
     pieces: [Piece; 2],
     outers: [BoundingBody; 2],
+    /// A lower bound on their distance.
+    pub at_least: Real,
 }
 
 impl Body for [BoundingBody; 2] {
@@ -98,8 +101,7 @@ impl UpperBound for PairUpperBound {
 /// The initial pieces and pairs of a query. A later query reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairQueue {
-    pieces: Vec<Piece>,
-    bodies: [Vec<(Piece, BoundingBody)>; 2],
+    pieces: [Parts<Piece>; 2],
     trees: [CapsuleTree; 2],
     waiting: WaitingRuns,
     nearest: NearestPairs,
@@ -174,38 +176,68 @@ impl<'a> TubePair<'a> {
         beginning: &mut PairQueue,
         pairs: &mut Vec<PiecePair>,
     ) -> Result<bool, ProximityError> {
-        self.begin_bodies(scale, beginning)?;
+        self.begin_pieces(scale, beginning)?;
         Ok(self.begin_pairs(upper, most, beginning, pairs))
     }
 
-    /// Fills `beginning` with the initial pieces and their bodies.
+    /// Fills `beginning` with the initial pieces.
     ///
     /// # Errors
     /// A curve is not finite.
-    pub(crate) fn begin_bodies(
+    pub(crate) fn begin_pieces(
         &self,
         scale: Real,
         beginning: &mut PairQueue,
     ) -> Result<(), ProximityError> {
-        let PairQueue { pieces, bodies, trees, .. } = beginning;
-        for (tube, bodies) in self.tubes.iter().zip(&mut *bodies) {
-            tube.begin(scale.max(0.25 * tube.widest()), pieces);
-            bodies.clear();
-            for piece in pieces.iter() {
-                let outer = tube.outer(piece);
-                tube.check_finite(piece, &outer)?;
-                bodies.push((*piece, outer));
-            }
+        let PairQueue { pieces, trees, .. } = beginning;
+        for (tube, pieces) in self.tubes.iter().zip(&mut *pieces) {
+            pieces.list.clear();
+            tube.begin_along(scale.max(0.25 * tube.widest()), |piece| pieces.list.push(piece));
+            pieces.forget_bodies();
         }
-        if pays(bodies.each_ref().map(Vec::len)) {
-            for (tree, bodies) in trees.iter_mut().zip(bodies) {
-                tree.build(bodies.iter().map(|(_, outer)| &outer.body), 0);
+        let pays = pays(pieces.each_ref().map(|pieces| pieces.list.len()));
+        for (k, tube) in self.tubes.iter().enumerate() {
+            // Samples are finite.
+            if !pays || tube.tube.is_function() {
+                for place in 0..pieces[k].list.len() {
+                    let piece = pieces[k].list[place];
+                    tube.check_finite(&piece, self.body_of(k, place, &mut pieces[k]))?;
+                }
+            }
+            if pays {
+                let count = pieces[k].list.len();
+                trees[k].begin(count, 0, &mut |run| self.capsule(k, run, &mut pieces[k]));
             }
         }
         Ok(())
     }
 
-    /// As [`begin`](Self::begin), for the bodies in `beginning`.
+    /// Returns the body of an initial piece.
+    fn body_of<'p>(
+        &self,
+        k: usize,
+        place: usize,
+        pieces: &'p mut Parts<Piece>,
+    ) -> &'p BoundingBody {
+        pieces.body(place, |piece| self.tubes[k].outer(piece))
+    }
+
+    /// Returns the capsule of a run of initial pieces.
+    fn capsule(
+        &self,
+        k: usize,
+        run: Range<usize>,
+        pieces: &mut Parts<Piece>,
+    ) -> Option<([Vector; 2], Real)> {
+        if run.len() > 1 {
+            let list = &pieces.list[run];
+            return self.tubes[k].around_run([&list[0], &list[list.len() - 1]]);
+        }
+        let BoundingBody { body, .. } = self.body_of(k, run.start, pieces);
+        Some(([body.start(), body.end()], body.radius()))
+    }
+
+    /// As [`begin`](Self::begin), for the pieces in `beginning`.
     pub(crate) fn begin_pairs(
         &self,
         upper: Real,
@@ -213,64 +245,95 @@ impl<'a> TubePair<'a> {
         beginning: &mut PairQueue,
         pairs: &mut Vec<PiecePair>,
     ) -> bool {
-        let PairQueue { bodies: [first, second], trees, waiting, nearest, .. } = beginning;
+        let PairQueue { pieces, trees, waiting, nearest } = beginning;
         nearest.begin(most);
-        let mut offer = |[i, j]: [usize; 2]| {
-            let at_least = self.at_least(&[first[i].1, second[j].1]);
+        let mut offer = |least: Real, places: [usize; 2], pieces: &mut [Parts<Piece>; 2]| {
+            let at_least = self.initial_at_least(least, places, pieces);
             if at_least <= upper {
-                nearest.push(at_least, [i, j]);
+                nearest.push(at_least, places);
             }
         };
-        if pays([first.len(), second.len()]) {
-            let bound = upper + 2.0 * self.slack();
-            let mut near = NearPairs::new(trees.each_ref(), waiting, bound);
-            std::iter::from_fn(|| near.next(|_| true)).for_each(offer);
+        let counts = pieces.each_ref().map(|pieces| pieces.list.len());
+        if pays(counts) {
+            let mut near = NearPairs::new(trees, waiting, upper + 2.0 * self.slack());
+            while let Some((least, places)) = self.next_pair(&mut near, pieces) {
+                offer(least, places, pieces);
+            }
         } else {
-            (0..first.len()).for_each(|i| (0..second.len()).for_each(|j| offer([i, j])));
+            for i in 0..counts[0] {
+                (0..counts[1]).for_each(|j| offer(Real::NEG_INFINITY, [i, j], pieces));
+            }
         }
         let (order, is_all) = nearest.farthest_first();
         pairs.clear();
-        pairs.extend(order.map(|[i, j]| {
-            let ((one, outer), (two, beside)) = (first[i], second[j]);
-            PiecePair { pieces: [one, two], outers: [outer, beside] }
-        }));
+        pairs.extend(order.map(|(at_least, places)| self.pair(at_least, places, pieces)));
         is_all
     }
 
-    /// Returns the upper bound from the nearest bodies in `beginning`; `None` if there are so few
-    /// pairs that all can be begun.
+    /// Returns the next pair of the trees and its lower bound.
+    fn next_pair(
+        &self,
+        near: &mut NearPairs,
+        pieces: &mut [Parts<Piece>; 2],
+    ) -> Option<(Real, [usize; 2])> {
+        near.next(&|_| true, &mut |k, run| self.capsule(k, run, &mut pieces[k]))
+    }
+
+    /// Returns a lower bound on the distance of two initial pieces, given the one of the tree.
+    fn initial_at_least(
+        &self,
+        least: Real,
+        places: [usize; 2],
+        [first, second]: &mut [Parts<Piece>; 2],
+    ) -> Real {
+        let bodies = [self.body_of(0, places[0], first), self.body_of(1, places[1], second)];
+        self.at_least(bodies.map(|outer| &outer.body)).max(least - 2.0 * self.slack())
+    }
+
+    fn pair(
+        &self,
+        at_least: Real,
+        places: [usize; 2],
+        pieces: &mut [Parts<Piece>; 2],
+    ) -> PiecePair {
+        let outers = [0, 1].map(|k: usize| *self.body_of(k, places[k], &mut pieces[k]));
+        let pieces = [0, 1].map(|k: usize| pieces[k].list[places[k]]);
+        PiecePair { pieces, outers, at_least }
+    }
+
+    /// Returns the upper bound from the nearest initial pieces; `None` if there are so few pairs
+    /// that all can be begun.
     pub(crate) fn bound_of_bodies(&self, beginning: &mut PairQueue) -> Option<PairUpperBound> {
-        let PairQueue { bodies: [first, second], trees, waiting, .. } = beginning;
-        if !pays([first.len(), second.len()]) {
+        let PairQueue { pieces, trees, waiting, .. } = beginning;
+        if !pays(pieces.each_ref().map(|pieces| pieces.list.len())) {
             return None;
         }
-        let (mut best, mut nearest) = (Real::INFINITY, None);
-        let mut near = NearPairs::new(trees.each_ref(), waiting, best);
-        while let Some([i, j]) = near.next(|_| true) {
-            let at_least = self.at_least(&[first[i].1, second[j].1]);
-            if at_least < best {
-                (best, nearest) = (at_least, Some([first[i], second[j]]));
-                near.bound = best + 2.0 * self.slack();
+        let mut nearest: Option<PiecePair> = None;
+        let mut near = NearPairs::new(trees, waiting, Real::INFINITY);
+        while let Some((least, places)) = self.next_pair(&mut near, pieces) {
+            let at_least = self.initial_at_least(least, places, pieces);
+            if nearest.is_none_or(|nearest| at_least < nearest.at_least) {
+                near.bound = at_least + 2.0 * self.slack();
+                nearest = Some(self.pair(at_least, places, pieces));
             }
         }
-        nearest.map(|pair| {
-            let [one, two] = pair.map(|(_, outer)| outer.body);
+        nearest.map(|PiecePair { pieces, outers, .. }| {
+            let [one, two] = outers.map(|outer| outer.body);
             let (feet, _) = one.nearest_on_axes(&two);
             let arcs = [0, 1].map(|k: usize| {
-                let (piece, outer) = &pair[k];
-                let [start, end] = self.tubes[k].arcs(piece);
-                start + (end - start) * outer.body.share_of(feet[k])
+                let [start, end] = self.tubes[k].arcs(&pieces[k]);
+                start + (end - start) * outers[k].body.share_of(feet[k])
             });
             let radii = [one.radius(), two.radius()];
-            self.found_from(pair.map(|(piece, _)| piece.section), arcs, half_way(feet, radii))
+            self.found_from(pieces.map(|piece| piece.section), arcs, half_way(feet, radii))
         })
     }
 
     /// Returns a lower bound on the distance of two bodies: the distance of the capsules around
     /// them, minus rounding.
-    pub(super) fn at_least(&self, [one, two]: &[BoundingBody; 2]) -> Real {
-        let (_, apart) = one.body.nearest_on_axes(&two.body);
-        apart - one.body.radius() - two.body.radius() - self.slack()
+    pub(super) fn at_least(&self, [one, two]: [&PlacedLink; 2]) -> Real {
+        let (_, apart) = one.nearest_on_axes(two);
+        apart - one.radius() - two.radius() - self.slack()
     }
 
     /// Returns the upper bound found from the point `from` (step 2 of the module).
@@ -360,7 +423,7 @@ impl Refinable for TubePair<'_> {
     }
 
     fn may_meet(&mut self, bodies: &[BoundingBody; 2], bound: Real) -> bool {
-        self.at_least(bodies) <= bound
+        self.at_least(bodies.each_ref().map(|outer| &outer.body)) <= bound
     }
 
     fn nearest(
@@ -483,11 +546,13 @@ impl NearestPairs {
         }
     }
 
-    /// Returns the pairs, the farthest first, and whether all pairs were kept.
-    pub(super) fn farthest_first(&mut self) -> (impl Iterator<Item = [usize; 2]>, bool) {
+    /// Returns the pairs with their bounds, the farthest first, and whether all pairs were kept.
+    pub(super) fn farthest_first(&mut self) -> (impl Iterator<Item = (Real, [usize; 2])>, bool) {
         self.keep_nearest();
         self.order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        (self.order.iter().map(|(_, pair)| pair.map(|place| place as usize)), self.is_all)
+        let pair =
+            |&(at_least, pair): &(Real, [u32; 2])| (at_least, pair.map(|place| place as usize));
+        (self.order.iter().map(pair), self.is_all)
     }
 
     fn keep_nearest(&mut self) {

@@ -101,7 +101,7 @@
 //! (`tube_point`).
 
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
-use super::capsule_tree::{CapsuleTree, NearPairs, WaitingRuns};
+use super::capsule_tree::{CapsuleTree, NearPairs, Parts, WaitingRuns};
 use super::placed_tube::{Piece, PlacedTube};
 use super::refinable::{Body, Refinable};
 use super::section_motions::{SectionMotion, SectionMotions};
@@ -168,20 +168,19 @@ impl Body for SelfPair {
     }
 }
 
-/// A piece, its body, and the end at which it is a face.
-type SelfBody = (Piece, BoundingBody, Option<usize>);
+/// A piece, and the end at which it is a face.
+type SelfPart = (Piece, Option<usize>);
 
 /// The initial pieces and pairs of a query. A later query reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfPairQueue {
-    pieces: Vec<Piece>,
     /// The pieces along the tube, then the faces along the tube.
-    bodies: Vec<SelfBody>,
+    parts: Parts<SelfPart>,
     /// How many pieces there are.
     count: usize,
-    /// For each body, upper bounds on the turn up to its start and up to its end.
+    /// For each part, upper bounds on the turn up to its start and up to its end.
     turned: Vec<[Real; 2]>,
-    /// For each body, how many faces before it are at starts and at ends of sections.
+    /// For each part, how many faces before it are at starts and at ends of sections.
     faces_before: Vec<[u32; 2]>,
     tree: CapsuleTree,
     waiting: WaitingRuns,
@@ -260,9 +259,8 @@ impl<'a> TubeWithItself<'a> {
         let begun = self.initial_pairs(scale, upper, beginning)?;
         begun.for_each(|(places, at_least, _)| nearest.push(at_least, places));
         let (order, is_all) = nearest.farthest_first();
-        let bodies = &beginning.bodies;
         pairs.clear();
-        pairs.extend(order.map(|[i, j]| pair(&bodies[i], &bodies[j])));
+        pairs.extend(order.map(|(_, places)| self.pair(places, &mut beginning.parts)));
         beginning.nearest = nearest;
         Ok(is_all)
     }
@@ -280,23 +278,24 @@ impl<'a> TubeWithItself<'a> {
     ) -> Result<impl Iterator<Item = ([usize; 2], Real, SelfPair)> + use<'a, 'q>, ProximityError>
     {
         let tube = self.tube();
-        let SelfPairQueue { pieces, bodies, count, turned, faces_before, tree, waiting, .. } =
-            beginning;
-        tube.begin(scale.max(0.25 * tube.widest()), pieces);
-        pieces.sort_unstable_by_key(|piece| (piece.section, piece.from));
-        bodies.clear();
-        for piece in pieces.iter() {
-            let outer = tube.outer(piece);
-            tube.check_finite(piece, &outer)?;
-            bodies.push((*piece, outer, None));
+        let SelfPairQueue { parts, count, turned, faces_before, tree, waiting, .. } = beginning;
+        parts.list.clear();
+        tube.begin_along(scale.max(0.25 * tube.widest()), |piece| parts.list.push((piece, None)));
+        *count = parts.list.len();
+        self.push_faces(&mut parts.list);
+        parts.forget_bodies();
+        // Samples are finite.
+        if tube.tube.is_function() {
+            for place in 0..*count {
+                let (piece, _) = parts.list[place];
+                tube.check_finite(&piece, self.body_of(place, parts))?;
+            }
         }
-        *count = bodies.len();
-        self.push_faces(bodies);
         turned.clear();
         faces_before.clear();
         faces_before.push([0; 2]);
         let mut faces = [0; 2];
-        for (piece, _, face) in bodies.iter() {
+        for (piece, face) in &parts.list {
             let at = |tick| tube.tube.turned_at_most(self.turns, piece.section, tick);
             turned.push([at(piece.from), at(piece.to)]);
             if let Some(end) = face {
@@ -304,23 +303,67 @@ impl<'a> TubeWithItself<'a> {
             }
             faces_before.push(faces);
         }
-        tree.build(bodies.iter().map(|(_, outer, _)| &outer.body), *count);
-        let own = *self;
-        let mut near = NearPairs::new([&*tree; 2], waiting, upper + 2.0 * self.slack());
+        let (own, count) = (*self, *count);
+        let capsule = move |run: Range<usize>, parts: &mut Parts<SelfPart>| {
+            if run.len() > 1 {
+                let is_one_list = run.start >= count || run.end <= count;
+                let ends = [&parts.list[run.start].0, &parts.list[run.end - 1].0];
+                return if is_one_list { own.tube().around_run(ends) } else { None };
+            }
+            let BoundingBody { body, .. } = own.body_of(run.start, parts);
+            Some(([body.start(), body.end()], body.radius()))
+        };
+        tree.begin(parts.list.len(), count, &mut |run| capsule(run, parts));
+        let trees = std::slice::from_mut(tree);
+        let mut near = NearPairs::new(trees, waiting, upper + 2.0 * self.slack());
+        let may_ask = move |runs| own.runs_may_turn_enough(&runs, count, turned, faces_before);
         Ok(std::iter::from_fn(move || {
             loop {
-                let [i, j] = near
-                    .next(|runs| own.runs_may_turn_enough(&runs, *count, turned, faces_before))?;
-                let pair = pair(&bodies[i], &bodies[j]);
+                let (_, places) = near.next(&may_ask, &mut |_, run| capsule(run, parts))?;
+                let pair = own.pair(places, parts);
                 if !own.turns_enough(&pair) {
                     continue;
                 }
-                let at_least = own.both.at_least(&pair.outers);
+                let at_least = own.at_least(&pair);
                 if at_least <= upper && own.may_count(&pair) {
-                    return Some(([i, j], at_least, pair));
+                    return Some((places, at_least, pair));
                 }
             }
         }))
+    }
+
+    fn at_least(&self, pair: &SelfPair) -> Real {
+        self.both.at_least(pair.outers.each_ref().map(|outer| &outer.body))
+    }
+
+    /// Returns the body of an initial piece or face.
+    fn body_of<'p>(&self, place: usize, parts: &'p mut Parts<SelfPart>) -> &'p BoundingBody {
+        parts.body(place, |(piece, face)| match face {
+            None => self.tube().outer(piece),
+            Some(end) => {
+                BoundingBody { body: self.body_of_face(piece, *end), excess: 0.0, narrows: 0.0 }
+            }
+        })
+    }
+
+    /// Returns two initial parts as a queried pair, in their order along the tube.
+    fn pair(&self, places: [usize; 2], parts: &mut Parts<SelfPart>) -> SelfPair {
+        let mut places = places;
+        let along = |place: usize| {
+            let (Piece { section, from, to }, _) = parts.list[place];
+            (section, from, to)
+        };
+        if along(places[1]) < along(places[0]) {
+            places.reverse();
+        }
+        let outers = places.map(|place| *self.body_of(place, parts));
+        let of_each = places.map(|place| parts.list[place]);
+        SelfPair {
+            pieces: of_each.map(|(piece, _)| piece),
+            outers,
+            faces: of_each.map(|(_, face)| face),
+            is_asked: true,
+        }
     }
 
     /// Whether a pair of bodies of two runs may turn as required. The first `count` bodies are
@@ -359,7 +402,7 @@ impl<'a> TubeWithItself<'a> {
     }
 
     /// Adds all faces to the pieces: the tube's flat ends and the wider sides of its steps.
-    fn push_faces(&self, bodies: &mut Vec<SelfBody>) {
+    fn push_faces(&self, parts: &mut Vec<SelfPart>) {
         let sections = self.tube().sections();
         for (number, section) in sections.iter().enumerate() {
             let before = number.checked_sub(1).and_then(|before| sections.get(before));
@@ -369,12 +412,7 @@ impl<'a> TubeWithItself<'a> {
                 {
                     let tick = if end == 0 { section.first } else { section.last };
                     let piece = Piece { section: number as u32, from: tick, to: tick };
-                    let body = self.body_of_face(&piece, end);
-                    bodies.push((
-                        piece,
-                        BoundingBody { body, excess: 0.0, narrows: 0.0 },
-                        Some(end),
-                    ));
+                    parts.push((piece, Some(end)));
                 }
             }
         }
@@ -1078,7 +1116,7 @@ impl Refinable for TubeWithItself<'_> {
     }
 
     fn may_meet(&mut self, pair: &SelfPair, bound: Real) -> bool {
-        pair.is_asked && self.both.at_least(&pair.outers) <= bound
+        pair.is_asked && self.at_least(pair) <= bound
     }
 
     fn nearest(&mut self, pair: &SelfPair, bound: Real, _: Option<u32>) -> Option<NearestOfLinks> {
@@ -1164,18 +1202,6 @@ impl Refinable for TubeWithItself<'_> {
 
     fn slack(&self) -> Real {
         self.both.slack()
-    }
-}
-
-/// Returns two pieces as a queried pair, in their order along the tube.
-fn pair(one: &SelfBody, other: &SelfBody) -> SelfPair {
-    let place = |piece: &Piece| (piece.section, piece.from, piece.to);
-    let [one, other] = if place(&one.0) <= place(&other.0) { [one, other] } else { [other, one] };
-    SelfPair {
-        pieces: [one.0, other.0],
-        outers: [one.1, other.1],
-        faces: [one.2, other.2],
-        is_asked: true,
     }
 }
 

@@ -152,11 +152,37 @@ impl BvhSearch {
         }
         let reach = self.prepared().hierarchy.mesh_reach;
         let mut plane_search = self.plane_search();
-        let shapes = motion_proof(&mut plane_search, reach, motion, margin, resolution)?;
+        let shapes = motion_proof(&mut plane_search, reach, motion, margin, resolution, MAX_BYTES)?;
         Ok(shapes.map(|shapes| write_proof(plane_search.mesh(), margin, Kind::Motion, &shapes)))
     }
 
     fn plane_search(&self) -> PlaneSearch<'_> {
         PlaneSearch::new(Level::new(), &self.prepared().hierarchy.mesh)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::LinearMotion;
+    use parry3d_f64::math::Vector;
+    use parry3d_f64::shape::Ball;
+
+    /// A proof of a motion ends where its shapes and steps need more than the permitted bytes.
+    #[test]
+    fn a_proof_of_a_motion_has_a_largest_size() {
+        let (vertices, triangles) = Ball::new(10.0).to_trimesh(16, 8);
+        let mut search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+        let (from, to) = ([Vector::ZERO, Vector::Z * 4.0], [Vector::ZERO, Vector::X * 4.0]);
+        let motion = LinearMotion::chain(&from, &to, &[1.0]).unwrap();
+        assert!(search.prove_motion(&motion, 1.0, 0.01).unwrap().is_some());
+        let reach = search.prepared().hierarchy.mesh_reach;
+        let mut plane_search = search.plane_search();
+        let mut proof =
+            |most| motion_proof(&mut plane_search, reach, &motion, 1.0, 0.01, most).unwrap();
+        let shapes = proof(MAX_BYTES).unwrap();
+        let bytes = shapes.iter().map(|shape| size_of(Kind::Motion, shape)).sum();
+        assert_eq!(proof(bytes).map(|shapes| shapes.len()), Some(shapes.len()));
+        assert!(proof(bytes - 1).is_none(), "{bytes}");
     }
 }

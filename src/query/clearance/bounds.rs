@@ -66,7 +66,7 @@ pub(crate) fn clearance<'m>(
     memory.pieces.clear();
     let mut bounds = BoundsSearch::new(tube, &mut memory.pieces, hint, tolerance);
     while let Some(piece) = memory.begun.pop() {
-        bounds.begin(piece);
+        bounds.begin(piece, 0.0);
     }
     bounds.run(Real::INFINITY)?;
     let best = bounds.best;
@@ -129,10 +129,10 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         Self { tube, pieces, hint, tolerance, aim, best: None, left: MOST_DIVISIONS }
     }
 
-    /// Adds an initial piece.
-    pub(crate) fn begin(&mut self, piece: T::Piece) {
+    /// Adds an initial piece, whose clearance is at least `lower`.
+    pub(crate) fn begin(&mut self, piece: T::Piece, lower: Real) {
         let (state, narrow) = (PieceState::Open, Real::INFINITY);
-        self.pieces.push(self.tube, PendingPiece { piece, lower: 0.0, state, narrow, levels: 0 });
+        self.pieces.push(self.tube, PendingPiece { piece, lower, state, narrow, levels: 0 });
     }
 
     fn upper(&self) -> Real {

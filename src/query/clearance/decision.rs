@@ -172,7 +172,7 @@ impl<T: Refinable> DecisionSearch<'_, T> {
         self.pieces.clear();
         let begun = std::mem::take(&mut self.pieces.begun);
         let mut bounds = BoundsSearch::new(self.tube, self.pieces, hint, resolution);
-        begun.into_iter().for_each(|piece| bounds.begin(piece));
+        begun.into_iter().for_each(|piece| bounds.begin(piece, 0.0));
         bounds.run(Real::INFINITY)?;
         Ok(bounds.best.filter(|best| best.upper() <= margin))
     }

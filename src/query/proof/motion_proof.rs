@@ -3,7 +3,7 @@
 //! pieces ([`tube_shape`]).
 
 use super::plane_search::PlaneSearch;
-use super::text::{Kind, MAX_BYTES, PiecePremises, ProvenShape, Shape, size_of};
+use super::text::{Kind, PiecePremises, ProvenShape, Shape, size_of};
 use crate::answer::ProximityError;
 use crate::curve::{CapPersistence, CurveBound, Section, Tube};
 use crate::distance::Scalar;
@@ -19,7 +19,7 @@ const MAX_SHAPES: usize = 1 << 16;
 /// its interval. `reach` is the mesh's largest coordinate.
 ///
 /// Returns `None` if a shape is within the margin, or so near that a motion of `resolution`
-/// matters, or if the proof would be too large.
+/// matters, or if the shapes and steps would need more than `most` bytes.
 ///
 /// # Errors
 /// The motion has no shape at some time, or its sections change; a shape is out of range; or a
@@ -30,6 +30,7 @@ pub(crate) fn motion_proof(
     motion: &dyn Motion,
     margin: Real,
     resolution: Real,
+    most: usize,
 ) -> Result<Option<Vec<ProvenShape>>, ProximityError> {
     let (mut tube, mut sections) = (Tube::empty(), SectionSignature::default());
     let (mut proven, mut waiting) = (Vec::new(), vec![[0.0, 1.0]]);
@@ -79,7 +80,7 @@ pub(crate) fn motion_proof(
         if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
             let parted = (shape, steps);
             bytes += size_of(Kind::Motion, &parted);
-            if bytes > MAX_BYTES {
+            if bytes > most {
                 return Ok(None);
             }
             proven.push(parted);
@@ -104,11 +105,7 @@ pub(crate) fn tube_shape(
     let (mut shape, mut places) = (Shape::default(), Vec::new());
     for number in 0..tube.sections().len() as u32 {
         let section = tube.section(number);
-        let [from, to] = tube.between_faces(number);
-        let place = |from, to| refine::Piece { section: number, from, to };
-        let mut waiting =
-            [place(to, section.last), place(from, to), place(section.first, from)].to_vec();
-        waiting.retain(|place| place.from < place.to);
+        let mut waiting: Vec<_> = tube.ranges(number).into_iter().flatten().rev().collect();
         while let Some(place) = waiting.pop() {
             let piece = piece(tube, section, &place, is_moving);
             let mut over = 0.125 * piece.curvature * piece.length * piece.length;

@@ -91,7 +91,7 @@ fn clearance_as_stated(
     let mut hint = Hint { upper: Real::INFINITY, triangle: None };
     hint.take(&memory.first_bound(tubes));
     let TubesMemory { beginning, pairs, pending, last } = memory;
-    tubes.begin_bodies(Real::INFINITY, beginning)?;
+    tubes.begin_pieces(Real::INFINITY, beginning)?;
     if let Some(bound) = tubes.bound_of_bodies(beginning) {
         hint.take(&bound);
     }
@@ -102,7 +102,7 @@ fn clearance_as_stated(
         pending.clear();
         let mut bounds = BoundsSearch::new(tubes, pending, hint, tolerance);
         while let Some(pair) = pairs.pop() {
-            bounds.begin(pair);
+            bounds.begin(pair, pair.at_least.max(0.0));
         }
         if bounds.run(limit)?
             && let Some(best) = bounds.best
