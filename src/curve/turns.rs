@@ -124,8 +124,9 @@ impl Tube {
                     let (sine, cosine) = (before.cross(axis).length(), before.dot(axis));
                     let is_folded = 1.0 + cosine <= 16.0 * Real::UNIT_ROUNDOFF;
                     // As for a chain (`query::robots::robot_with_itself`).
-                    let is_wide = 2.0 * wider * sine > length * (1.0 + cosine);
-                    let is_thin = cosine > 0.0 && 2.0 * radius * sine <= length * cosine;
+                    let length_at_least = length * (1.0 + LEVEL);
+                    let is_wide = 2.0 * wider * sine > length_at_least * (1.0 + cosine);
+                    let is_thin = cosine > 0.0 && 2.0 * radius * sine <= length_at_least * cosine;
                     if is_wide && !is_thin || is_folded {
                         return Err(TooSharp::Joint { joint: number, angle, radius, length });
                     }

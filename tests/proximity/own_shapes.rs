@@ -171,6 +171,26 @@ fn a_noisy_straight_robot_never_meets_itself() {
     assert!(turned > 60, "{turned}");
 }
 
+/// A square corner of links twice as long as their radius is as sharp as a joint may be: links
+/// overlap there over half of their length. It is accepted in every frame.
+#[test]
+fn a_joint_at_the_limit_is_accepted_in_every_frame() {
+    let (mut query, mut random) = (SelfQuery::new(), Random::new(65));
+    let up = (0..=4).map(|k| Vector::new(0.0, 0.0, f64::from(k)));
+    let over = (1..=2).map(|k| Vector::new(f64::from(k), 0.0, 4.0));
+    let down = (0..4).rev().map(|k| Vector::new(2.0, 0.0, f64::from(k)));
+    let points: Vec<_> = up.chain(over).chain(down).collect();
+    for _ in 0..50 {
+        let away = [0.0, 10.0, 1e3][random.below(3) as usize];
+        let frame = random.pose(away);
+        let placed: Vec<_> = points.iter().map(|point| frame * *point).collect();
+        for make in KINDS {
+            let found = distance(&mut query, &make(&placed, &[0.5; 10]), 1.0).unwrap();
+            assert!((found - 1.0).abs() < 1e-9, "{found}");
+        }
+    }
+}
+
 /// Two disks on an arc of a thin backbone, `4 / theta` from its centre: the inner points of their
 /// rims are `2 (4 / theta - 5) sin(theta / 2)` apart.
 #[test]

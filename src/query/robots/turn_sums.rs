@@ -10,7 +10,7 @@
 //!   of the wider link.
 //!
 //! So a joint is accepted if either length is at most half of the shorter link, the first with the
-//! wider radius.
+//! wider radius; 2^-24 more is accepted too, so that a joint at the limit is in every frame.
 //!
 //! # Rounding
 //! The cosine of half a turn falls from 1 to -1 as the turn grows from 0
@@ -71,8 +71,9 @@ impl TurnSums {
             let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
             // The cosine of the whole angle.
             let ahead = (cosine - sine) * (cosine + sine);
-            let is_wide = 2.0 * wider * sine > length * cosine;
-            let is_thin = || ahead > 0.0 && 4.0 * radius * sine * cosine <= length * ahead;
+            let length_at_least = length * (1.0 + LEVEL);
+            let is_wide = 2.0 * wider * sine > length_at_least * cosine;
+            let is_thin = || ahead > 0.0 && 4.0 * radius * sine * cosine <= length_at_least * ahead;
             if is_folded || is_wide && !is_thin() {
                 let angle = 2.0 * libm::atan2(sine, cosine);
                 return Err(ProximityError::JointTooSharp {
