@@ -52,7 +52,8 @@ pub(crate) trait Drift {
     /// Upper bound on the movement of an end of a section.
     fn moves(&self, section: usize, end: usize) -> Real;
 
-    /// Upper bound on the change of the vector from one end of a section to the other.
+    /// Upper bound on the change of the vector from one end of a section to the other, in any frame
+    /// that moves rigidly: its length changes by no more.
     fn stretches(&self, section: usize) -> Real;
 
     /// Upper bound on the turn of a section, rad.

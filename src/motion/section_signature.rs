@@ -80,10 +80,6 @@ impl Drift for MotionDrift<'_> {
     /// Uses the displacements of both ends if they are known, otherwise their speeds.
     fn stretches(&self, section: usize) -> Real {
         let by_speed = self.moves(section, 0) + self.moves(section, 1);
-        if self.motion.has_frame() {
-            // Seen from the frame.
-            return by_speed;
-        }
         let [from, to] = self.motion.times;
         let sides = [[from, self.t], [self.t, to]].map(|times| {
             let bound = self.motion.motion.displacement(section, [0.0, 1.0], times)?;

@@ -226,18 +226,21 @@ impl Scene {
     ) -> Result<Option<SceneMotionClearance>, SceneError> {
         check_not_negative("tolerance", tolerance).map_err(SceneError::Query)?;
         self.bounds()?;
-        let least =
-            self.with_moving_robots(motions, |scene, robots| scene.least_slack(robots, tolerance))?;
+        let least = self.with_moving_robots(motions, |scene, robots| {
+            scene.least_slack(robots, tolerance, MAX_PAIRS_FOR_BOUNDS)
+        })?;
         let found = least.answer(tolerance);
         Ok(found.map(|BoundedSlack { lower, upper, resolved, uncertainty, place: (t, place) }| {
             SceneMotionClearance { lower, upper, resolved, uncertainty, t, place }
         }))
     }
 
+    /// Tests at most `left` pairs of pieces of robots.
     fn least_slack(
         &mut self,
         robots: &[MovingRobot],
         tolerance: Real,
+        mut left: u32,
     ) -> Result<LeastSlack<(Real, ScenePlace)>, SceneError> {
         let mut least = LeastSlack::new();
         for (bound, [number, robot]) in
@@ -276,7 +279,6 @@ impl Scene {
             let by_bound = one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1));
             by_bound.then(one.2.cmp(&other.2))
         });
-        let mut left = MAX_PAIRS_FOR_BOUNDS;
         for (bound, _, pair) in order {
             if bound > least.upper() {
                 break;
@@ -605,4 +607,47 @@ fn of_motions(robots: [usize; 2], motions: [&dyn Motion; 2], error: ProximityErr
         has_it.then(|| motion.speed(section, [0.0, 1.0], [0.0, 1.0]).point)
     });
     of_robot(robots[usize::from(second > first)])(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::LinearMotion;
+    use parry3d_f64::math::Vector;
+
+    /// All pairs of robots share one limit of work: what one pair needs is not enough for four
+    /// equal ones, and four times as much is.
+    #[test]
+    fn pairs_of_robots_share_the_work() {
+        let bend = |x: Real, y: Real, turn: Real| {
+            let points: Vec<_> = (0..=8)
+                .map(|k| Real::from(k) / 8.0)
+                .map(|s| Vector::new(x + turn * s * s, y, 10.0 * s))
+                .collect();
+            points
+        };
+        let robot = |x: Real, y: Real, turn: Real| {
+            LinearMotion::chain(&bend(x, y, 0.0), &bend(x, y, turn), &[0.5; 8]).unwrap()
+        };
+        let robots: Vec<_> = (0..4)
+            .map(|pair| 100.0 * Real::from(pair))
+            .flat_map(|y| [robot(0.0, y, 1.0), robot(4.0, y, -1.0)])
+            .collect();
+        let mut scene = Scene::new();
+        scene.set_robot_margin(Some(0.0)).unwrap();
+        let mut is_enough = |count: usize, pairs: u32| {
+            let motions: Vec<_> = robots[..count].iter().collect();
+            let least = scene
+                .with_moving_robots(&motions, |scene, robots| {
+                    scene.least_slack(robots, 1e-3, pairs)
+                })
+                .unwrap();
+            least.answer(1e-3).unwrap().resolved
+        };
+        let mut pairs = 1;
+        while !is_enough(2, pairs) {
+            pairs *= 2;
+        }
+        assert!(pairs > 16 && !is_enough(8, pairs) && is_enough(8, 4 * pairs), "{pairs}");
+    }
 }

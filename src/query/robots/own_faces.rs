@@ -750,6 +750,19 @@ mod tests {
         }
     }
 
+    /// In a nearly closed ring pairs of opposite links turn by pi and are no local minima. The
+    /// search slides from one to the two tips, so it is bounded and need not look at all pairs.
+    #[test]
+    fn a_slide_bounds_the_search_of_a_ring() {
+        let angles = (0..=1000).map(|k| 6.2 * Real::from(k) / 1000.0);
+        let points: Vec<_> =
+            angles.map(|a| Vector::new(100.0 * a.cos(), 100.0 * a.sin(), 0.0)).collect();
+        let robot = Chain::capsules(&points, &[0.5; 1000]).unwrap();
+        let mut memory = SelfMemory::default();
+        let found = RobotWithItself::new(&robot, &mut memory).unwrap().minimum(&mut memory);
+        assert!(found.is_some() && memory.faces().looked_at == 0, "{}", memory.faces().looked_at);
+    }
+
     /// The same for links that are many times shorter than their radius: flat faces are far apart
     /// along the robot although the links around them overlap, and touching robots have one answer.
     #[test]
