@@ -271,7 +271,8 @@ impl SelfQuery {
     ///
     /// 1. Two places with a turn of at least pi between them. (For a tube made from a chain: two
     ///    links that count for [`minimum`](Self::minimum).)
-    /// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
+    /// 2. A flat face and a place in front of it, with a turn of at least pi / 2. (For links with a
+    ///    turn of at least pi, `minimum` tests a face only if the axes are nearest there.)
     /// 3. Two faces that look at one another.
     ///
     /// It leaves out a piece if the robot leads nearer to the face from every place of the piece.

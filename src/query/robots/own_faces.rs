@@ -34,9 +34,8 @@
 //!
 //! **All turns.** If all turns are queried, links with a turn of pi count without a face too. Their
 //! pair is skipped if case 3 holds for either node: from its places the robot leads nearer, so
-//! condition 2 of `JoinedLink` fails. It is also skipped if all links of one node have a shoulder
-//! at the end that the segment reaches: then the rule for faces decides. Where axes run level,
-//! `w . t` is 0 within rounding, and neither holds.
+//! condition 2 of `JoinedLink` fails. Where axes run level, `w . t` is 0 within rounding, and case 3
+//! does not hold.
 //!
 //! **Facing.** If all `w . t > 0`, the faces at ends of links face away; if all `w . t < 0`, the
 //! faces at starts do.
@@ -110,8 +109,6 @@ struct Node {
     round: [bool; 2],
     /// Whether the robot ends or is thinner before some link, and behind some link.
     stops: [bool; 2],
-    /// Whether all links are wider than the neighbour at their start, and at their end.
-    all: [bool; 2],
     /// The cosine from which the adjoining links contain the shoulder points at starts, and at ends
     /// (`least_covered`): the largest over all links.
     covered: [Real; 2],
@@ -331,7 +328,7 @@ impl OwnFaces {
             let has_face = one.has_face() || two.has_face();
             in_band &= has_face && two.first < turns.queried_from[one.first + one.count - 1];
         }
-        let mut look = one.some[1] && two.some[0];
+        let look = one.some[1] && two.some[0];
         if !in_band && !look {
             return [false; 2];
         }
@@ -345,22 +342,9 @@ impl OwnFaces {
             return [in_band, look];
         }
         let [capsule, other] = pair.map(|place| &self.capsules[place]);
-        let is_beyond = |at_least: Real| self.frame.outside(at_least) - self.rounding.0 > bound;
         // Capsules are hardly farther apart than the centres.
-        if away > bound && is_beyond(capsule.at_least(other)) {
+        if away > bound && self.frame.outside(capsule.at_least(other)) - self.rounding.0 > bound {
             return [false; 2];
-        }
-        let is_half_turn = || two.first >= turns.queried_from[one.first];
-        if one.count == 1 && two.count == 1 && !(band == Band::All && is_half_turn()) {
-            // Balls around the faces contain them.
-            look &= !is_beyond(capsule.ball(1).at_least(&other.ball(0)));
-            in_band &= [0, 1].into_iter().any(|end: usize| {
-                one.some[end] && !is_beyond(capsule.ball(end).at_least(other))
-                    || two.some[end] && !is_beyond(other.ball(end).at_least(capsule))
-            });
-            if !in_band && !look {
-                return [false; 2];
-            }
         }
         // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);
@@ -368,12 +352,8 @@ impl OwnFaces {
         let at_face = one.may_see(&from_two) && from_one.may_be_local
             || two.may_see(&from_one) && from_two.may_be_local;
         let has_half_turn = last >= turns.queried_from[one.first];
-        let beside = band == Band::All
-            && has_half_turn
-            && from_one.may_be_local
-            && from_two.may_be_local
-            && !one.is_at_shoulders(&from_two)
-            && !two.is_at_shoulders(&from_one);
+        let beside =
+            band == Band::All && has_half_turn && from_one.may_be_local && from_two.may_be_local;
         in_band &= at_face || beside;
         let is_covered = from_one.forwards == Some(true) && from_one.is_covered
             || from_two.forwards == Some(false) && from_two.is_covered;
@@ -422,7 +402,6 @@ impl Node {
             some,
             round,
             stops: beside.map(|neighbour| neighbour.is_none() || is_wider(neighbour)),
-            all: beside.map(is_wider),
             covered,
             adjoining,
         }
@@ -464,7 +443,6 @@ impl Node {
             some: either(|node| node.some),
             round: either(|node| node.round),
             stops: either(|node| node.stops),
-            all: [0, 1].map(|end: usize| one.all[end] && two.all[end]),
             covered: [0, 1].map(|end: usize| one.covered[end].max(two.covered[end])),
             adjoining: one.adjoining.min(two.adjoining),
         }
@@ -481,11 +459,6 @@ impl Node {
             Some(false) => self.some[1],
             None => self.has_face(),
         }
-    }
-
-    /// Whether all places of the node are at shoulders.
-    fn is_at_shoulders(&self, seen: &Seen) -> bool {
-        seen.forwards.is_some_and(|forwards| self.all[usize::from(!forwards)])
     }
 
     /// Returns how the node lies as seen from the faces of another. `way` leads from the other's

@@ -29,12 +29,6 @@ impl NodeCapsule {
         let axes = segment_parameters(self.start - other.start, self.along, other.along);
         axes.gap.norm() - self.radius - other.radius - SLACK
     }
-
-    /// Returns the ball around an end of the axis.
-    pub fn ball(&self, end: usize) -> Self {
-        let start = if end == 0 { self.start } else { self.start + self.along };
-        Self { start, along: Vec3::zero(0.0), ..*self }
-    }
 }
 
 /// The frame of a search over two robots.
