@@ -231,8 +231,8 @@ impl Batches {
 /// The entries per item after a chunk of `items` that needed `needed` entries. They grow at once
 /// and shrink slowly, because all entries of a chunk are read back.
 fn next_entries_per_item(before: u64, least: u64, needed: u64, items: u64) -> u64 {
-    let each = (needed + needed / 8).div_ceil(items.max(1));
-    each.max(before - before / 8).max(least)
+    let per_item = (needed + needed / 8).div_ceil(items.max(1));
+    per_item.max(before - before / 8).max(least)
 }
 
 /// The words in some bytes of the device.
@@ -242,10 +242,8 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u32> + Clone + '_ {
 
 /// The pairs of words in some bytes of the device.
 fn pairs(bytes: &[u8]) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
-    let word = |pair: &[u8; 8], at| {
-        u32::from_ne_bytes([pair[at], pair[at + 1], pair[at + 2], pair[at + 3]])
-    };
-    bytes.as_chunks::<8>().0.iter().map(move |pair| (word(pair, 0), word(pair, 4)))
+    let pairs = bytes.as_chunks::<4>().0.as_chunks::<2>().0.iter();
+    pairs.map(|[one, other]| (u32::from_ne_bytes(*one), u32::from_ne_bytes(*other)))
 }
 
 /// The number of a link in its group: the thread that searched for it.

@@ -1,5 +1,5 @@
 //! Bounds on the distance of a link from a box and from a triangle, in single precision: the
-//! derivation, and the twin of `shaders/search/bounds.wgsl`.
+//! derivation, and the constants of `shaders/search/bounds.wgsl`.
 //!
 //! # Definitions
 //! - u = 2^-24: the unit roundoff of `f32`. R: the reach, the largest of 1, the coordinates of the
@@ -16,10 +16,10 @@
 //!   for one with a flat cap.
 //!
 //! # Claim
-//! 1. [`SearchedLink::box_distance_squared`] is at most `(F + e)^2` for every triangle in the
-//!    box. So a box whose bound exceeds `(D + r + e)^2` holds no triangle with `d <= D`.
-//! 2. [`SearchedLink::bounds`]: `lower - e <= d`; `d <= upper + e`, and if `upper + e < 0`, the
-//!    triangle reaches into the link. Then `PlacedLink::measure` returns 0.
+//! 1. `box_distance_squared` is at most `(F + e)^2` for every triangle in the box. So a box whose
+//!    bound exceeds `(D + r + e)^2` holds no triangle with `d <= D`.
+//! 2. `triangle_bounds`: `lower - e <= d`; `d <= upper + e`, and if `upper + e < 0`, the triangle
+//!    reaches into the link.
 //!
 //! # Proof
 //! Neither bound depends on how close the guess of the closest places is: a bad guess makes bounds
@@ -44,20 +44,32 @@
 //! # Rounding
 //! In units of u R. A sum of m terms in any order, each a product of k roundings, errs by at most
 //! `(m - 1 + k)` times the sum of the terms' magnitudes (Higham, Accuracy and Stability, 4.2). The
-//! second order is below 2^-18 of the first.
+//! second order is below 2^-18 of the first. These parts recur:
+//!
+//! - The square of a vector's length errs by 3 of itself, its root by half of that and 10: 11.5,
+//!   written as 12. If the vector is a difference, its own rounding adds 1: 13.
+//! - The axis errs by 1 for the difference, 11.5 for its length, 5 for the division and 1 for the
+//!   product: by 18.5, written as 22.
+//! - The height of a point along the axis: 1 for its difference from the start, 3 for the product,
+//!   1 for the difference from the length: 5, written as 7.
+//! - The part of that difference across the axis: the height (102 without the axis' length), 22 for
+//!   the axis once more, 2 for a product and a difference, 13 for its length.
+//! - `n - a <n, a>`, the part across the axis a: `2 x 18.5` for a, 3 for the inner product, 1 for
+//!   the product, 1 for the difference, 11.5 for the length, 1 for the product with r. It is added
+//!   in two sums: 2 for itself, and `2 sqrt(3)` for their other terms. Together 60.
 //!
 //! | step | round | flat cap |
 //! |---|---|---|
 //! | rounded input: vertices, ends, radius; an axis turns by `3.5 u R / l` | 5 | 5 + 3.5 r / l |
 //! | **Lower:** `<n, T_i> - <n, E_j>`: 6 terms, magnitudes `2 sqrt(3)` | 21 | 21 |
-//! | `r k_j`: the part across the axis errs by 61 | - | 61 |
-//! | the length of n and the division: 16 of a distance up to 3.5 | 56 | 56 |
+//! | `r k_j`: the part across the axis | - | 60 |
+//! | the length of n and the division: 17 of a distance up to 3.5 | 60 | 60 |
 //! | minus r | 2 | 2 |
-//! | **sum** | 84 | 145 + 3.5 r / l |
+//! | **sum** | 88 | 148 + 3.5 r / l |
 //! | **Upper:** q - p: 5 terms, magnitudes up to 10.4, each of 2 roundings | 63 | 63 |
 //! | its length: 12 of a distance up to 3.5 | 42 | - |
-//! | height over a cap: 7 of `2 sqrt(3)`; 22 for the axis, 13 for its length, of 3.5 | - | 147 |
-//! | distance from the axis' line: 102 of the height; 22 and 2 for parts, 13 for length | - | 232 |
+//! | height over a cap: 7 of `2 sqrt(3)`; of 3.5 the axis 22, the axis' length 13 | - | 147 |
+//! | distance from the axis' line: the same height without the length; 22, 2 and 13 of 3.5 | - | 232 |
 //! | both together (at most their sum), the root: 13 of 3.5 | - | 46 |
 //! | **sum** | 110 | 493 + 3.5 r / l |
 //! | **Box:** 9 terms, magnitudes `3 sqrt(3)`, each of 4 roundings | 63 | |
@@ -85,12 +97,12 @@ pub(super) const FLAT_ERROR: f32 = 512.0 * UNIT;
 pub(super) const TURN_ERROR: f32 = 4.0 * UNIT;
 pub(super) const UNIT: f32 = f32::EPSILON / 2.0;
 /// A link with flat caps that is shorter than this, relative to R, has no direction.
-const THIN: f32 = f32::from_bits((127 - 16) << 23);
+pub(super) const THIN: f32 = f32::from_bits((127 - 16) << 23);
 /// Denominators, and lengths.
-const TINY: f32 = f32::from_bits((127 - 80) << 23);
-const SMALL: f32 = f32::from_bits((127 - 40) << 23);
+pub(super) const TINY: f32 = f32::from_bits((127 - 80) << 23);
+pub(super) const SMALL: f32 = f32::from_bits((127 - 40) << 23);
 /// The squared sine below which two segments count as parallel when closest places are guessed.
-const PARALLEL: f32 = 1e-7;
+pub(super) const PARALLEL: f32 = 1e-7;
 
 /// A cap as the device knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,66 +149,6 @@ pub(super) fn constants() -> String {
     text
 }
 
-type Point = Vec3<f32>;
-
-/// The inner product, as devices may compute it: in order, or fused and in reverse.
-fn dot<const FUSED: bool>(a: Point, b: Point) -> f32 {
-    if FUSED {
-        return a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z));
-    }
-    a.x * b.x + a.y * b.y + a.z * b.z
-}
-
-/// The function `op` of each coordinate.
-#[cfg(test)]
-fn map2(a: Point, b: Point, op: impl Fn(f32, f32) -> f32) -> Point {
-    Vec3::new(op(a.x, b.x), op(a.y, b.y), op(a.z, b.z))
-}
-
-#[cfg(test)]
-fn abs(a: Point) -> Point {
-    Vec3::new(a.x.abs(), a.y.abs(), a.z.abs())
-}
-
-/// Bounds on the signed distance of a triangle from a link.
-#[cfg(test)]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
-    pub lower: f32,
-    pub upper: f32,
-}
-
-/// A place on the axis (from 0 to 1) and one on a triangle, as shares of two edges.
-#[cfg(test)]
-#[derive(Clone, Copy)]
-struct Places {
-    s: f32,
-    v: f32,
-    w: f32,
-}
-
-/// A link as the device sees it. `FUSED`: whether products are fused with sums.
-#[cfg(test)]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SearchedLink<const FUSED: bool = false> {
-    start: Point,
-    end: Point,
-    axis: Point,
-    low: Point,
-    high: Point,
-    pub radius: f32,
-    length: f32,
-    inverse: f32,
-    pub error: f32,
-    /// Whether a cap is flat or may be.
-    flat_start: bool,
-    flat_end: bool,
-    /// Whether a cap is round or may be.
-    round_start: bool,
-    round_end: bool,
-    is_thin: bool,
-}
-
 /// An upper bound on the `error` of every link that was added.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ErrorBound {
@@ -209,10 +161,10 @@ pub(super) struct ErrorBound {
 
 impl ErrorBound {
     #[inline(always)]
-    pub(super) fn add(&mut self, [start, end]: [Point; 2], radius: f32, flat: [bool; 2]) {
+    pub(super) fn add(&mut self, [start, end]: [Vec3<f32>; 2], radius: f32, flat: [bool; 2]) {
         let reach = start.largest().max(end.largest()).max(radius.max(1.0));
         self.reach = self.reach.max(reach);
-        let squared = dot::<false>(end - start, end - start);
+        let squared = (end - start).dot(end - start);
         let least = THIN * reach;
         if (flat[0] || flat[1]) && squared >= 0.99 * least * least {
             self.has_flat = true;
@@ -232,176 +184,4 @@ impl ErrorBound {
             self.reach * ROUND_ERROR
         }
     }
-}
-
-#[cfg(test)]
-impl<const FUSED: bool> SearchedLink<FUSED> {
-    pub(super) fn new([start, end]: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> Self {
-        let along = end - start;
-        let squared = dot::<FUSED>(along, along);
-        let length = squared.sqrt();
-        let reach = start.largest().max(end.largest()).max(radius.max(1.0));
-        let has_flat = caps != [SearchCap::Round; 2];
-        let is_thin = has_flat && length < THIN * reach;
-        let short = 1.0 / length.max(TINY);
-        let error = if has_flat && !is_thin {
-            reach * (FLAT_ERROR + TURN_ERROR * radius * short)
-        } else {
-            ROUND_ERROR * reach
-        };
-        Self {
-            start,
-            end,
-            axis: along * short,
-            low: map2(start, end, f32::min),
-            high: map2(start, end, f32::max),
-            radius,
-            length,
-            inverse: 1.0 / squared.max(TINY),
-            error,
-            flat_start: !is_thin && caps[0] != SearchCap::Round,
-            flat_end: !is_thin && caps[1] != SearchCap::Round,
-            round_start: is_thin || caps[0] != SearchCap::Flat,
-            round_end: is_thin || caps[1] != SearchCap::Flat,
-            is_thin,
-        }
-    }
-}
-
-#[cfg(test)]
-impl<const FUSED: bool> SearchedLink<FUSED> {
-    /// The square of a lower bound on the distance between the axis and a box.
-    pub(super) fn box_distance_squared(&self, low: Point, high: Point) -> f32 {
-        // 1. The gaps between two boxes.
-        let gap = map2(low - self.high, self.low - high, f32::max);
-        let gap = map2(gap, Vec3::zero(0.0), f32::max);
-        // 2. The plane across the vector from the axis to the centre.
-        let centre = (low + high) * 0.5;
-        let half = high - centre;
-        let along = self.end - self.start;
-        let s = (dot::<FUSED>(centre - self.start, along) * self.inverse).clamp(0.0, 1.0);
-        let normal = centre - (self.start + along * s);
-        let behind = dot::<FUSED>(normal, self.start).max(dot::<FUSED>(normal, self.end));
-        let reach = dot::<FUSED>(abs(normal), half);
-        let ahead = (dot::<FUSED>(normal, centre) - reach - behind).max(0.0);
-        let squared = dot::<FUSED>(normal, normal);
-        let plane = if squared > TINY { ahead * ahead / squared } else { 0.0 };
-        dot::<FUSED>(gap, gap).max(plane)
-    }
-
-    /// The limit on [`SearchedLink::box_distance_squared`] for a bound on the distance.
-    pub(super) fn box_limit(&self, bound: f32) -> f32 {
-        let limit = bound + self.radius + self.error;
-        limit * limit
-    }
-
-    /// How far the triangle lies ahead of the link along a normal. `caps`: the reach of a flat
-    /// start and a flat end along that normal, beyond the ends of the axis.
-    fn ahead_of_plane(&self, [a, b, c]: [Point; 3], normal: Point, caps: [f32; 2]) -> f32 {
-        let at = |point| dot::<FUSED>(normal, point);
-        let triangle = at(a).min(at(b).min(at(c)));
-        triangle - (at(self.start) + caps[0]).max(at(self.end) + caps[1])
-    }
-
-    pub(super) fn bounds(&self, corners: [Point; 3]) -> Bounds {
-        let [a, b, c] = corners;
-        let along = self.end - self.start;
-        let (e1, e2) = (b - a, c - a);
-        let Places { s, v, w } = close_places::<FUSED>(along, a - self.start, e1, e2);
-        let on_triangle = a + e1 * v + e2 * w;
-        let between = on_triangle - (self.start + along * s);
-        let axis = dot::<FUSED>(between, between).sqrt();
-        let axis_ahead = self.ahead_of_plane(corners, between, [0.0; 2]).max(0.0);
-        let axis_lower = if axis > SMALL { axis_ahead / axis } else { 0.0 };
-        let radius = if self.is_thin { 0.0 } else { self.radius };
-        let mut bounds = Bounds { lower: axis_lower - self.radius, upper: axis - radius };
-        if !self.flat_start && !self.flat_end {
-            return bounds;
-        }
-        // The height of the point over the cap that is nearer to it.
-        let from_start = on_triangle - self.start;
-        let along_axis = dot::<FUSED>(from_start, self.axis);
-        let below_start = if self.flat_start { -along_axis } else { -FAR };
-        let above_end = if self.flat_end { along_axis - self.length } else { -FAR };
-        let height = below_start.max(above_end);
-        if height <= 0.0 {
-            bounds.upper = bounds.upper.max(height);
-            return bounds;
-        }
-        let outward = if above_end > below_start { self.axis } else { -self.axis };
-        let radial = from_start - self.axis * along_axis;
-        let rho = dot::<FUSED>(radial, radial).sqrt();
-        let beside = (rho - self.radius).max(0.0);
-        bounds.upper = (height * height + beside * beside).sqrt();
-        let normal = outward * height + radial * (beside / rho.max(SMALL));
-        let length = dot::<FUSED>(normal, normal).sqrt();
-        let across = normal - self.axis * dot::<FUSED>(normal, self.axis);
-        let flat_reach = self.radius * dot::<FUSED>(across, across).sqrt();
-        let round_reach = self.radius * length;
-        let caps = [self.round_start, self.round_end]
-            .map(|is_round| if is_round { round_reach } else { flat_reach });
-        if length > SMALL {
-            let lower = self.ahead_of_plane(corners, normal, caps) / length;
-            bounds.lower = bounds.lower.max(lower);
-        }
-        bounds
-    }
-}
-
-/// Places where a segment from 0 to `along` and the segment from `a` to `a + edge` are close.
-#[cfg(test)]
-fn close_segments<const FUSED: bool>(along: Point, a: Point, edge: Point) -> [f32; 2] {
-    let (aa, ee) = (dot::<FUSED>(along, along), dot::<FUSED>(edge, edge));
-    let ae = dot::<FUSED>(along, edge);
-    let (c, f) = (-dot::<FUSED>(along, a), -dot::<FUSED>(edge, a));
-    let determinant = aa * ee - ae * ae;
-    let is_skew = determinant > PARALLEL * aa * ee;
-    let s = if is_skew { ((ae * f - c * ee) / determinant).clamp(0.0, 1.0) } else { 0.0 };
-    let t = ((ae * s + f) / ee.max(TINY)).clamp(0.0, 1.0);
-    [((ae * t - c) / aa.max(TINY)).clamp(0.0, 1.0), t]
-}
-
-/// A guess at the closest places of an axis from 0 to `along` and a triangle.
-#[cfg(test)]
-fn close_places<const FUSED: bool>(along: Point, a: Point, e1: Point, e2: Point) -> Places {
-    let squared_between = |Places { s, v, w }: Places| {
-        let d = a + e1 * v + e2 * w - along * s;
-        dot::<FUSED>(d, d)
-    };
-    let ab = close_segments::<FUSED>(along, a, e1);
-    let ac = close_segments::<FUSED>(along, a, e2);
-    let bc = close_segments::<FUSED>(along, a + e1, e2 - e1);
-    let normal = e1.cross(e2);
-    let squared = dot::<FUSED>(normal, normal);
-    let has_face = squared > TINY;
-    let inverse = 1.0 / if has_face { squared } else { 1.0 };
-    let start_height = dot::<FUSED>(a, normal);
-    let end_height = dot::<FUSED>(a - along, normal);
-    let crosses = (start_height < 0.0) != (end_height < 0.0);
-    let difference = start_height - end_height;
-    let crossing = if crosses && difference != 0.0 { start_height / difference } else { 0.0 };
-    let on_face = |s: f32| {
-        let point = along * s - a;
-        let v = dot::<FUSED>(point.cross(e2), normal) * inverse;
-        let w = dot::<FUSED>(e1.cross(point), normal) * inverse;
-        (has_face && v >= 0.0 && w >= 0.0 && v + w <= 1.0).then(|| {
-            let v = v.clamp(0.0, 1.0);
-            Places { s, v, w: w.clamp(0.0, 1.0 - v) }
-        })
-    };
-    let edges = [
-        Places { s: ab[0], v: ab[1], w: 0.0 },
-        Places { s: ac[0], v: 0.0, w: ac[1] },
-        Places { s: bc[0], v: 1.0 - bc[1], w: bc[1] },
-    ];
-    let crossing = if crosses { on_face(crossing.clamp(0.0, 1.0)) } else { None };
-    let faces = [on_face(0.0), on_face(1.0), crossing];
-    let (mut best, mut least) = (edges[0], squared_between(edges[0]));
-    for other in edges.into_iter().skip(1).chain(faces.into_iter().flatten()) {
-        let squared = squared_between(other);
-        if squared < least {
-            (best, least) = (other, squared);
-        }
-    }
-    best
 }

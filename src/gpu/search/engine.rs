@@ -329,7 +329,8 @@ impl GpuSearch {
         std::mem::take(&mut self.batches.for_cpu)
     }
 
-    /// Answers a batch on the device, and the remaining robots on the CPU.
+    /// Answers a batch on the device, and on the CPU the robots that remain, or all if the batch is
+    /// not for the device.
     ///
     /// # Errors
     /// The device has failed.
@@ -338,12 +339,15 @@ impl GpuSearch {
         robots: &[(&Chain, Pose)],
         answer: &A,
         out: &mut Vec<Result<A::Value, ProximityError>>,
-        on_cpu: impl FnOnce(
+        on_cpu: impl Fn(
             &mut BvhSearch,
             &[(&Chain, Pose)],
             &mut Vec<Result<A::Value, ProximityError>>,
         ) -> Result<(), ProximityError>,
     ) -> Result<(), ProximityError> {
+        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
+            return on_cpu(self.refitted(), robots, out);
+        }
         out.resize_with(robots.len(), || Ok(answer.placeholder()));
         self.search(Robots::Batch(robots), answer, out)?;
         let for_cpu = self.take_for_cpu();
@@ -441,12 +445,7 @@ impl Engine for GpuSearch {
         out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
         let answer = PerLink(Robots::Batch(robots));
-        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
-            return self.refitted().ask_per_link_batch(robots, out);
-        }
-        self.search_batch(robots, &answer, out, |cpu, robots, out| {
-            cpu.ask_per_link_batch(robots, out)
-        })
+        self.search_batch(robots, &answer, out, BvhSearch::ask_per_link_batch)
     }
 
     fn ask_minimum_batch(
@@ -455,12 +454,7 @@ impl Engine for GpuSearch {
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
         let answer = Minimum(Robots::Batch(robots));
-        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
-            return self.refitted().ask_minimum_batch(robots, out);
-        }
-        self.search_batch(robots, &answer, out, |cpu, robots, out| {
-            cpu.ask_minimum_batch(robots, out)
-        })
+        self.search_batch(robots, &answer, out, BvhSearch::ask_minimum_batch)
     }
 
     fn ask_clears_batch(
@@ -470,9 +464,6 @@ impl Engine for GpuSearch {
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
         let answer = Clears { robots: Robots::Batch(robots), margin };
-        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
-            return self.refitted().ask_clears_batch(robots, margin, out);
-        }
         self.search_batch(robots, &answer, out, |cpu, robots, out| {
             cpu.ask_clears_batch(robots, margin, out)
         })

@@ -1,12 +1,234 @@
-//! The kernels of the search on the CPU, step by step, and the tests that compare the two.
+//! The shaders of the search in Rust: `bounds.wgsl`, `search.wgsl`, `gather.wgsl` and the refit,
+//! step by step, and the tests that compare the two.
 
-use super::bounds::{FAR, SearchedLink};
+use super::bounds::{
+    FAR, FLAT_ERROR, PARALLEL, ROUND_ERROR, SMALL, SearchCap, THIN, TINY, TURN_ERROR,
+};
 use super::kernels::{MOST_GATHERED, NOTHING, SLOTS};
 use super::tree::{LEAF, SearchTree, leaf_range};
 use crate::distance::Vec3;
 use crate::mesh::{Mesh, SearchFrame};
 
 type Point = Vec3<f32>;
+
+/// The inner product, as devices may compute it: in order, or fused and in reverse.
+fn dot<const FUSED: bool>(a: Point, b: Point) -> f32 {
+    if FUSED {
+        return a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z));
+    }
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// The function `op` of each coordinate.
+fn map2(a: Point, b: Point, op: impl Fn(f32, f32) -> f32) -> Point {
+    Vec3::new(op(a.x, b.x), op(a.y, b.y), op(a.z, b.z))
+}
+
+fn abs(a: Point) -> Point {
+    Vec3::new(a.x.abs(), a.y.abs(), a.z.abs())
+}
+
+/// Bounds on the signed distance of a triangle from a link.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub lower: f32,
+    pub upper: f32,
+}
+
+/// A place on the axis (from 0 to 1) and one on a triangle, as shares of two edges.
+#[derive(Clone, Copy)]
+struct Places {
+    s: f32,
+    v: f32,
+    w: f32,
+}
+
+/// A link as the device sees it. `FUSED`: whether products are fused with sums.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SearchedLink<const FUSED: bool = false> {
+    start: Point,
+    end: Point,
+    axis: Point,
+    low: Point,
+    high: Point,
+    pub radius: f32,
+    length: f32,
+    inverse: f32,
+    pub error: f32,
+    /// Whether a cap is flat or may be.
+    flat_start: bool,
+    flat_end: bool,
+    /// Whether a cap is round or may be.
+    round_start: bool,
+    round_end: bool,
+    is_thin: bool,
+}
+
+impl<const FUSED: bool> SearchedLink<FUSED> {
+    pub(super) fn new([start, end]: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> Self {
+        let along = end - start;
+        let squared = dot::<FUSED>(along, along);
+        let length = squared.sqrt();
+        let reach = start.largest().max(end.largest()).max(radius.max(1.0));
+        let has_flat = caps != [SearchCap::Round; 2];
+        let is_thin = has_flat && length < THIN * reach;
+        let short = 1.0 / length.max(TINY);
+        let error = if has_flat && !is_thin {
+            reach * (FLAT_ERROR + TURN_ERROR * radius * short)
+        } else {
+            ROUND_ERROR * reach
+        };
+        Self {
+            start,
+            end,
+            axis: along * short,
+            low: map2(start, end, f32::min),
+            high: map2(start, end, f32::max),
+            radius,
+            length,
+            inverse: 1.0 / squared.max(TINY),
+            error,
+            flat_start: !is_thin && caps[0] != SearchCap::Round,
+            flat_end: !is_thin && caps[1] != SearchCap::Round,
+            round_start: is_thin || caps[0] != SearchCap::Flat,
+            round_end: is_thin || caps[1] != SearchCap::Flat,
+            is_thin,
+        }
+    }
+
+    /// The square of a lower bound on the distance between the axis and a box.
+    pub(super) fn box_distance_squared(&self, low: Point, high: Point) -> f32 {
+        // 1. The gaps between two boxes.
+        let gap = map2(low - self.high, self.low - high, f32::max);
+        let gap = map2(gap, Vec3::zero(0.0), f32::max);
+        // 2. The plane across the vector from the axis to the centre.
+        let centre = (low + high) * 0.5;
+        let half = high - centre;
+        let along = self.end - self.start;
+        let s = (dot::<FUSED>(centre - self.start, along) * self.inverse).clamp(0.0, 1.0);
+        let normal = centre - (self.start + along * s);
+        let behind = dot::<FUSED>(normal, self.start).max(dot::<FUSED>(normal, self.end));
+        let reach = dot::<FUSED>(abs(normal), half);
+        let ahead = (dot::<FUSED>(normal, centre) - reach - behind).max(0.0);
+        let squared = dot::<FUSED>(normal, normal);
+        let plane = if squared > TINY { ahead * ahead / squared } else { 0.0 };
+        dot::<FUSED>(gap, gap).max(plane)
+    }
+
+    /// The limit on [`SearchedLink::box_distance_squared`] for a bound on the distance.
+    pub(super) fn box_limit(&self, bound: f32) -> f32 {
+        let limit = bound + self.radius + self.error;
+        limit * limit
+    }
+
+    /// How far the triangle lies ahead of the link along a normal. `caps`: the reach of a flat
+    /// start and a flat end along that normal, beyond the ends of the axis.
+    fn ahead_of_plane(&self, [a, b, c]: [Point; 3], normal: Point, caps: [f32; 2]) -> f32 {
+        let at = |point| dot::<FUSED>(normal, point);
+        let triangle = at(a).min(at(b).min(at(c)));
+        triangle - (at(self.start) + caps[0]).max(at(self.end) + caps[1])
+    }
+
+    pub(super) fn bounds(&self, corners: [Point; 3]) -> Bounds {
+        let [a, b, c] = corners;
+        let along = self.end - self.start;
+        let (e1, e2) = (b - a, c - a);
+        let Places { s, v, w } = close_places::<FUSED>(along, a - self.start, e1, e2);
+        let on_triangle = a + e1 * v + e2 * w;
+        let between = on_triangle - (self.start + along * s);
+        let axis = dot::<FUSED>(between, between).sqrt();
+        let axis_ahead = self.ahead_of_plane(corners, between, [0.0; 2]).max(0.0);
+        let axis_lower = if axis > SMALL { axis_ahead / axis } else { 0.0 };
+        let radius = if self.is_thin { 0.0 } else { self.radius };
+        let mut bounds = Bounds { lower: axis_lower - self.radius, upper: axis - radius };
+        if !self.flat_start && !self.flat_end {
+            return bounds;
+        }
+        // The height of the point over the cap that is nearer to it.
+        let from_start = on_triangle - self.start;
+        let along_axis = dot::<FUSED>(from_start, self.axis);
+        let below_start = if self.flat_start { -along_axis } else { -FAR };
+        let above_end = if self.flat_end { along_axis - self.length } else { -FAR };
+        let height = below_start.max(above_end);
+        if height <= 0.0 {
+            bounds.upper = bounds.upper.max(height);
+            return bounds;
+        }
+        let outward = if above_end > below_start { self.axis } else { -self.axis };
+        let radial = from_start - self.axis * along_axis;
+        let rho = dot::<FUSED>(radial, radial).sqrt();
+        let beside = (rho - self.radius).max(0.0);
+        bounds.upper = (height * height + beside * beside).sqrt();
+        let normal = outward * height + radial * (beside / rho.max(SMALL));
+        let length = dot::<FUSED>(normal, normal).sqrt();
+        let across = normal - self.axis * dot::<FUSED>(normal, self.axis);
+        let flat_reach = self.radius * dot::<FUSED>(across, across).sqrt();
+        let round_reach = self.radius * length;
+        let caps = [self.round_start, self.round_end]
+            .map(|is_round| if is_round { round_reach } else { flat_reach });
+        if length > SMALL {
+            let lower = self.ahead_of_plane(corners, normal, caps) / length;
+            bounds.lower = bounds.lower.max(lower);
+        }
+        bounds
+    }
+}
+
+/// Places where a segment from 0 to `along` and the segment from `a` to `a + edge` are close.
+fn close_segments<const FUSED: bool>(along: Point, a: Point, edge: Point) -> [f32; 2] {
+    let (aa, ee) = (dot::<FUSED>(along, along), dot::<FUSED>(edge, edge));
+    let ae = dot::<FUSED>(along, edge);
+    let (c, f) = (-dot::<FUSED>(along, a), -dot::<FUSED>(edge, a));
+    let determinant = aa * ee - ae * ae;
+    let is_skew = determinant > PARALLEL * aa * ee;
+    let s = if is_skew { ((ae * f - c * ee) / determinant).clamp(0.0, 1.0) } else { 0.0 };
+    let t = ((ae * s + f) / ee.max(TINY)).clamp(0.0, 1.0);
+    [((ae * t - c) / aa.max(TINY)).clamp(0.0, 1.0), t]
+}
+
+/// A guess at the closest places of an axis from 0 to `along` and a triangle.
+fn close_places<const FUSED: bool>(along: Point, a: Point, e1: Point, e2: Point) -> Places {
+    let squared_between = |Places { s, v, w }: Places| {
+        let d = a + e1 * v + e2 * w - along * s;
+        dot::<FUSED>(d, d)
+    };
+    let ab = close_segments::<FUSED>(along, a, e1);
+    let ac = close_segments::<FUSED>(along, a, e2);
+    let bc = close_segments::<FUSED>(along, a + e1, e2 - e1);
+    let normal = e1.cross(e2);
+    let squared = dot::<FUSED>(normal, normal);
+    let has_face = squared > TINY;
+    let inverse = 1.0 / if has_face { squared } else { 1.0 };
+    let start_height = dot::<FUSED>(a, normal);
+    let end_height = dot::<FUSED>(a - along, normal);
+    let crosses = (start_height < 0.0) != (end_height < 0.0);
+    let difference = start_height - end_height;
+    let crossing = if crosses && difference != 0.0 { start_height / difference } else { 0.0 };
+    let on_face = |s: f32| {
+        let point = along * s - a;
+        let v = dot::<FUSED>(point.cross(e2), normal) * inverse;
+        let w = dot::<FUSED>(e1.cross(point), normal) * inverse;
+        (has_face && v >= 0.0 && w >= 0.0 && v + w <= 1.0).then(|| {
+            let v = v.clamp(0.0, 1.0);
+            Places { s, v, w: w.clamp(0.0, 1.0 - v) }
+        })
+    };
+    let edges = [
+        Places { s: ab[0], v: ab[1], w: 0.0 },
+        Places { s: ac[0], v: 0.0, w: ac[1] },
+        Places { s: bc[0], v: 1.0 - bc[1], w: bc[1] },
+    ];
+    let crossing = if crosses { on_face(crossing.clamp(0.0, 1.0)) } else { None };
+    let faces = [on_face(0.0), on_face(1.0), crossing];
+    let (mut best, mut least) = (edges[0], squared_between(edges[0]));
+    for other in edges.into_iter().skip(1).chain(faces.into_iter().flatten()) {
+        let squared = squared_between(other);
+        if squared < least {
+            (best, least) = (other, squared);
+        }
+    }
+    best
+}
 
 /// A box: its lowest and its highest corner.
 type Corners = [Point; 2];
@@ -34,6 +256,11 @@ pub(super) struct Wanted {
 
 impl Wanted {
     pub(super) const ANY: Self = Self { bound: FAR, highest: NOTHING };
+
+    /// `is_wanted` in robots.wgsl: whether a triangle with this lower bound is wanted.
+    fn is_met_by(self, lower: f32, triangle: u32, error: f32) -> bool {
+        lower <= self.bound + error && triangle <= self.highest
+    }
 }
 
 fn low_of(a: Point, b: Point) -> Point {
@@ -78,9 +305,6 @@ impl<'a> TwinTree<'a> {
         let mut candidates: Vec<(f32, u32)> = Vec::new();
         let mut least_overflow = FAR;
         let mut waiting = vec![(0.0, 0)];
-        let far = |wanted: Wanted, lower: f32, triangle: u32| {
-            lower > wanted.bound + link.error || triangle > wanted.highest
-        };
         while let Some((squared, place)) = waiting.pop() {
             if squared > link.box_limit(wanted.bound) {
                 continue;
@@ -106,7 +330,7 @@ impl<'a> TwinTree<'a> {
             for at in leaf_range(place) {
                 let triangle = self.tree.triangles[at];
                 let bounds = link.bounds(self.triangles[at]);
-                if far(wanted, bounds.lower, triangle) {
+                if !wanted.is_met_by(bounds.lower, triangle, link.error) {
                     continue;
                 }
                 let at_most = bounds.upper + link.error;
@@ -115,7 +339,8 @@ impl<'a> TwinTree<'a> {
                     wanted.highest = wanted.highest.min(triangle);
                 }
                 if candidates.len() == SLOTS as usize {
-                    candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
+                    candidates
+                        .retain(|&(lower, triangle)| wanted.is_met_by(lower, triangle, link.error));
                 }
                 candidates.push((bounds.lower, triangle));
                 if candidates.len() > SLOTS as usize {
@@ -126,8 +351,8 @@ impl<'a> TwinTree<'a> {
                 }
             }
         }
-        candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
-        let overflows = least_overflow <= wanted.bound + link.error;
+        candidates.retain(|&(lower, triangle)| wanted.is_met_by(lower, triangle, link.error));
+        let overflows = wanted.is_met_by(least_overflow, 0, link.error);
         (candidates.into_iter().map(|candidate| candidate.1).collect(), wanted, overflows)
     }
 
@@ -137,6 +362,7 @@ impl<'a> TwinTree<'a> {
         link: &SearchedLink<FUSED>,
         wanted: Wanted,
     ) -> Option<Vec<u32>> {
+        let limit = link.box_limit(wanted.bound);
         let mut found = Vec::new();
         let mut waiting = vec![0];
         while let Some(place) = waiting.pop() {
@@ -144,7 +370,7 @@ impl<'a> TwinTree<'a> {
                 for at in leaf_range(place) {
                     let triangle = self.tree.triangles[at];
                     let lower = link.bounds(self.triangles[at]).lower;
-                    if lower <= wanted.bound + link.error && triangle <= wanted.highest {
+                    if wanted.is_met_by(lower, triangle, link.error) {
                         found.push(triangle);
                     }
                 }
@@ -158,7 +384,7 @@ impl<'a> TwinTree<'a> {
                 node.children.into_iter().zip(node.lowest).zip(self.boxes[place as usize])
             {
                 let squared = link.box_distance_squared(low, high);
-                if lowest <= wanted.highest && squared <= link.box_limit(wanted.bound) {
+                if lowest <= wanted.highest && squared <= limit {
                     waiting.push(child);
                 }
             }
@@ -168,7 +394,7 @@ impl<'a> TwinTree<'a> {
 }
 
 mod tests {
-    use super::super::bounds::{ErrorBound, SearchCap};
+    use super::super::bounds::ErrorBound;
     use super::super::device::DeviceTree;
     use super::super::kernels::text_of_bounds;
     use super::*;

@@ -227,10 +227,9 @@ fn many_equals_take_the_second_pass_and_then_the_cpu() {
 fn a_group_whose_two_counts_differ_is_left_to_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let (mesh, robots) = fan(600);
-    let test = "bounds.lower <= bound + link.error &&";
+    let test = "is_wanted(bounds.lower, triangle.number, bound, highest, link.error)";
     for shift in ["0.05", "-0.05"] {
-        let other =
-            format!("bounds.lower <= bound + link.error + select(0.0, {shift}, slots > 0u) &&");
+        let other = test.replace("bound,", &format!("bound + select(0.0, {shift}, slots > 0u),"));
         let mut edited = 0;
         let kernels = SearchKernels::with_passes(&gpu.0.device, |kind| {
             let edit = |mut pass: Shader| {

@@ -47,7 +47,7 @@ fn gather_link(
             for (var k = 0u; k < leaf_count(child); k++) {
                 let triangle = triangles[leaf_first(child) + k];
                 let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
-                if (bounds.lower <= bound + link.error && triangle.number <= highest) {
+                if (is_wanted(bounds.lower, triangle.number, bound, highest, link.error)) {
                     if (found < slots) {
                         entries[first + found] = vec2<u32>(lane, triangle.number);
                     }
@@ -83,6 +83,9 @@ fn gather(
     }
     workgroupBarrier();
     var is_link = false;
+    var link: SearchedLink;
+    var bound = 0.0;
+    var highest = 0u;
     var own_first = 0u;
     var own_count = 0u;
     if (is_gathered(number)) {
@@ -90,8 +93,10 @@ fn gather(
         is_link = lane < group.links;
         if (is_link) {
             let limit = limit_of(number, lane);
-            let bound = bitcast<f32>(limit.x);
-            own_count = gather_link(robot_link(group, lane), lane, bound, limit.y, 0u, 0u);
+            link = robot_link(group, lane);
+            bound = bitcast<f32>(limit.x);
+            highest = limit.y;
+            own_count = gather_link(link, lane, bound, highest, 0u, 0u);
             own_first = atomicAdd(&group_count, own_count);
             if (own_count > MOST_GATHERED) {
                 atomicStore(&group_full, 1u);
@@ -113,11 +118,8 @@ fn gather(
     workgroupBarrier();
     storageBarrier();
     if (is_link && group_first != NOTHING) {
-        let limit = limit_of(number, lane);
-        let bound = bitcast<f32>(limit.x);
-        let link = robot_link(groups[number], lane);
         let first = group_first + own_first;
-        if (gather_link(link, lane, bound, limit.y, first, own_count) != own_count) {
+        if (gather_link(link, lane, bound, highest, first, own_count) != own_count) {
             atomicStore(&group_full, 1u);
         }
     }

@@ -48,6 +48,12 @@ fn box_limit(link: SearchedLink, bound: f32) -> f32 {
     return limit * limit;
 }
 
+// Whether a triangle with this lower bound is wanted. D, T and e of gpu/search/batch.rs are
+// `bound`, `highest` and `error`.
+fn is_wanted(lower: f32, triangle: u32, bound: f32, highest: u32, error: f32) -> bool {
+    return lower <= bound + error && triangle <= highest;
+}
+
 // Whether loops still run to their ends. A driver may stop them: once all loops of a thread
 // together have taken 65,535 rounds, Mesa's llvmpipe leaves each loop after one round. This loop
 // has two, and its count is not known to the compiler.

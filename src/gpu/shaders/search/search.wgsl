@@ -34,10 +34,12 @@ fn highest_wanted() -> u32 {
     return own_highest_wanted;
 }
 
-fn drop_unwanted_candidates(limit: f32, highest: u32) {
+fn drop_unwanted_candidates(error: f32) {
+    let bound = bound();
+    let highest = highest_wanted();
     var kept = 0u;
     for (var i = 0u; i < count; i++) {
-        if (lowers[i] <= limit && candidates[i] <= highest) {
+        if (is_wanted(lowers[i], candidates[i], bound, highest, error)) {
             candidates[kept] = candidates[i];
             lowers[kept] = lowers[i];
             kept++;
@@ -47,9 +49,9 @@ fn drop_unwanted_candidates(limit: f32, highest: u32) {
 }
 
 // Keeps a wanted triangle if a slot is free, or else the nearer ones by their lower bounds.
-fn add_candidate(triangle: u32, lower: f32, limit: f32) {
+fn add_candidate(triangle: u32, lower: f32, error: f32) {
     if (count == SLOTS) {
-        drop_unwanted_candidates(limit, highest_wanted());
+        drop_unwanted_candidates(error);
     }
     if (count < SLOTS) {
         candidates[count] = triangle;
@@ -77,7 +79,7 @@ fn visit_leaf(link: SearchedLink, leaf: u32) {
     for (var k = 0u; k < leaf_count(leaf); k++) {
         let triangle = triangles[first + k];
         let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
-        if (bounds.lower > bound() + link.error || triangle.number > highest_wanted()) {
+        if (!is_wanted(bounds.lower, triangle.number, bound(), highest_wanted(), link.error)) {
             continue;
         }
         // The triangle is at most this far from the link; if negative, it certainly touches.
@@ -100,7 +102,7 @@ fn visit_leaf(link: SearchedLink, leaf: u32) {
                 own_highest_wanted = min(own_highest_wanted, triangle.number);
             }
         }
-        add_candidate(triangle.number, bounds.lower, bound() + link.error);
+        add_candidate(triangle.number, bounds.lower, link.error);
     }
 }
 
@@ -173,7 +175,8 @@ fn search(
     workgroupBarrier();
     count = 0u;
     least_overflow = FAR;
-    own_bound = select(FAR, bitcast<f32>(query.margin_up), QUESTION == CLEARS);
+    // FAR without a margin.
+    own_bound = bitcast<f32>(query.margin_up);
     own_highest_wanted = NOTHING;
     var error = 0.0;
     var is_link = false;
@@ -189,9 +192,9 @@ fn search(
     workgroupBarrier();
     var own_first = 0u;
     if (is_link) {
-        let limit = bound() + error;
-        drop_unwanted_candidates(limit, highest_wanted());
-        if (least_overflow <= limit) {
+        drop_unwanted_candidates(error);
+        // Any triangle, also the lowest, may have found no slot.
+        if (is_wanted(least_overflow, 0u, bound(), highest_wanted(), error)) {
             atomicStore(&group_overflows, 1u);
         }
         own_first = atomicAdd(&group_count, count);
