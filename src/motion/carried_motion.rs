@@ -24,7 +24,7 @@
 //! keeps it. If w' differs from 0, `|(w - w') x t|` changes at most at the rate
 //! `|w - w'| (|w| + turn)`, and is at most `|w - w'|`.
 
-use super::common_frame::{CommonFrame, UP};
+use super::common_frame::{CommonFrame, UP, product};
 use super::rigid_path::RigidPath;
 use super::{Motion, Speed};
 use crate::curve::{Section, Tube};
@@ -186,12 +186,10 @@ impl<'a> CarriedMotion<'a> {
         let piece = &piece();
         // Claim 1: `away` is D0, `own` U, `carried` g.
         let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
-        let twist = if frame.turn_off == 0.0 {
-            0.0
-        } else {
+        let twist = product(2.0 * frame.turn_off, || {
             let away = piece.most(1.0, |point| point - frame.at);
-            2.0 * frame.turn_off * (away + half * (stated.point + frame.off))
-        };
+            away + half * (stated.point + frame.off)
+        });
         let own = stated.point + frame.off + twist;
         let carried = if turning == 0.0 {
             0.0
@@ -209,12 +207,12 @@ impl<'a> CarriedMotion<'a> {
         if other.turn == Vector::ZERO {
             apart = apart.min(length(between) + carried);
         }
-        let other_off = if other.turn_off == 0.0 {
-            other.off
-        } else {
-            let moved = half * (own + carried + length(frame.velocity) + length(other.velocity));
-            other.off + other.turn_off * (piece.most(1.0, |point| point - other.at) + moved)
-        };
+        let other_off = other.off
+            + product(other.turn_off, || {
+                let velocities = length(frame.velocity) + length(other.velocity);
+                let moved = half * (own + carried + velocities);
+                piece.most(1.0, |point| point - other.at) + moved
+            });
         let rounding = frame.rounding(piece.reach) + other.rounding(piece.reach);
         let apart = apart + other_off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
         // Directions.

@@ -54,6 +54,12 @@ pub struct CommonFrame {
     pub(super) turn_off: Real,
 }
 
+/// Returns a product of numbers that are at least 0; it is 0 for the factor 0, even if the other
+/// number is infinite, which then need not be known.
+pub(super) fn product(factor: Real, other: impl FnOnce() -> Real) -> Real {
+    if factor == 0.0 { 0.0 } else { factor * other() }
+}
+
 /// Covers fewer than 64 roundings of positive terms.
 pub(super) const UP: Real = 1.0 + 64.0 * Real::UNIT_ROUNDOFF;
 
@@ -181,13 +187,10 @@ impl CommonFrame {
     pub(super) fn stray(&self, point: Vector, apart: Real, stated: Speed) -> Speed {
         let away = (point - self.at).length() + length(self.velocity) * apart;
         let own = stated.point + self.off;
-        let twist = if self.turn_off == 0.0 {
-            0.0
-        } else if 2.0 * apart * self.turn_off <= 1.0 {
-            2.0 * self.turn_off * (away + apart * own)
-        } else {
-            Real::INFINITY
-        };
+        let is_bounded = 2.0 * apart * self.turn_off <= 1.0;
+        let twist = product(2.0 * self.turn_off, || {
+            if is_bounded { away + apart * own } else { Real::INFINITY }
+        });
         Speed { point: own + twist, turn: stated.turn + self.turn_off }
     }
 

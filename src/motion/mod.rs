@@ -3,7 +3,6 @@
 mod bending;
 mod carried_motion;
 mod common_frame;
-mod displacement_bound;
 #[cfg(test)]
 mod displacement_bound_tests;
 mod linear;
@@ -22,7 +21,6 @@ mod verify;
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
 pub(crate) use carried_motion::{CarriedMotion, CarriedPiece};
 pub use common_frame::CommonFrame;
-pub use displacement_bound::DisplacementBound;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
@@ -31,8 +29,8 @@ pub use rigid::RigidMotion;
 pub(crate) use rigid_path::RigidPath;
 pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
-pub use speed::Speed;
 pub(crate) use speed::check_speed;
+pub use speed::{DisplacementBound, Speed};
 pub use verify::verify_motion;
 
 use crate::curve::Tube;

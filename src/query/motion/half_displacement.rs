@@ -2,7 +2,7 @@
 //! remains.
 //!
 //! # Definitions
-//! - A motion may bound the displacement of a piece (`motion::displacement_bound`). Relative to the
+//! - A motion may bound the displacement of a piece (`motion::speed`). Relative to the
 //!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
 //!   `off`. Here a and b are the displacements of the ends of the piece: at the share s of the
 //!   piece and the fraction q of the time, the displacement is q ((1 - s) a + s b). Before the

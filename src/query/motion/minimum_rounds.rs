@@ -41,7 +41,7 @@
 //! rises, and the lower bound of no part falls.
 
 use super::intervals::Interval;
-use super::progress::MAX_SHAPES;
+use super::intervals::MAX_SHAPES;
 use crate::answer::ProximityError;
 use crate::refine::UpperBound;
 use parry3d_f64::math::Real;

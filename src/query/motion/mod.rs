@@ -1,7 +1,6 @@
 //! Queries about motions: whether a margin is kept, until when, and bounds on the least clearance.
 
 mod approach_bound;
-mod approach_speed;
 mod current_shape;
 mod half_displacement;
 mod interval_test;
@@ -18,13 +17,11 @@ mod moving_tube;
 #[cfg(feature = "robots")]
 mod moving_tube_with_itself;
 mod pending_piece;
-mod progress;
 mod refinement;
 mod relative_motion;
 #[cfg(feature = "robots")]
 mod self_motion;
 mod separating_planes;
-mod unresolved_piece;
 
 pub(crate) use approach_bound::half_length;
 #[cfg(feature = "robots")]

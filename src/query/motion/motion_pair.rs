@@ -3,9 +3,11 @@
 //!
 //! # Algorithm
 //! 1. Test an interval by the two shapes at its middle, as for one motion (`motion_search`). Let
-//!    tau be half of the interval and V1, V2 the speeds of two pieces, seen from one frame. Then
-//!    the pieces come nearer by at most tau (V1 + V2). The frame is at rest, or carries one of the
-//!    robots (`motion::common_frame`): for each interval the one with the least speeds.
+//!    tau be half of the interval and V1, V2 bounds on the speeds of two pieces, seen from one
+//!    frame. Then the pieces come nearer by at most tau (V1 + V2). The frame is at rest, or carries
+//!    one of the robots (`motion::common_frame`): for each interval the frame in which the sum of
+//!    both robots' greatest speeds is least ([`PairSpeeds`]). Each bound holds by itself, so the
+//!    bound of a half need not be below the bound of its piece.
 //! 2. Pairs for which that is too much are tested again in the remaining parts of the interval.
 //! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
 //!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
@@ -17,13 +19,13 @@
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
+use super::intervals::MAX_SHAPES;
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::minimum_policy::MinimumPolicy;
 use super::minimum_rounds::{
     Minimized, Minimum, MinimumBounds, NearestFirst, RoundMemory, minimum,
 };
 use super::moving_pair::{MovingPair, SeenFrom};
-use super::progress::MAX_SHAPES;
 use super::refinement::refine;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{
@@ -136,13 +138,10 @@ impl MotionPair<'_> {
     ) -> Result<TestedInterval<PairUpperBound>, ProximityError> {
         let (motions, names, times) = (self.motions, self.names, interval.times);
         let MotionsMemory { current, beginning, pairs, .. } = &mut *self.memory;
-        let shapes = shapes(motions, names, current, times)?;
-        let speeds = PairSpeeds::new(&shapes, names)?;
-        let PlacedShapes { tubes, cap_change, carried } = shapes;
-        let mut tubes = TubePair::new(tubes);
+        let MiddleShapes { mut tubes, motions, speeds, approach_bound, reach } =
+            MiddleShapes::new(motions, names, current, times)?;
         // A finer resolution is below rounding.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
-        let reach = half_length(times) * speeds.sum();
         let MarginQuery { margin, resolution } = wanted;
         let (scale, upper) =
             (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
@@ -151,8 +150,7 @@ impl MotionPair<'_> {
             let (fastest, speed) = speeds.fastest();
             check_subdivision(speed, resolution, || (fastest, speed))?;
         }
-        let approach_bound = ApproachBound::new(times, cap_change);
-        let moving = MovingPair { motions: carried, seen_from: speeds.seen_from, names, left };
+        let moving = MovingPair { motions, seen_from: speeds.seen_from, names, left };
         let mut test =
             IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
         refine(&mut tubes, pairs, &mut test)?;
@@ -200,7 +198,7 @@ impl Minimized for PairClearance<'_, '_> {
         known: &mut MinimumBounds<PairUpperBound>,
     ) -> Result<(), ProximityError> {
         let MotionPair { memory, motions, names } = &mut *self.pair;
-        let placed = shapes(*motions, *names, &mut memory.current, interval.times)?;
+        let placed = place_both(*motions, *names, &mut memory.current, interval.times)?;
         seed(known, &TubePair::new(placed.tubes), interval.midpoint());
         Ok(())
     }
@@ -213,19 +211,14 @@ impl Minimized for PairClearance<'_, '_> {
         let left = &mut *self.left;
         let MotionPair { memory, motions, names } = &mut *self.pair;
         let MotionsMemory { current, beginning, pairs, .. } = &mut **memory;
-        let (times, t) = (interval.times, interval.midpoint());
-        let shapes = shapes(*motions, *names, current, times)?;
-        let speeds = PairSpeeds::new(&shapes, *names)?;
-        let PlacedShapes { tubes, cap_change, carried } = shapes;
-        let approach_bound = ApproachBound::new(times, cap_change);
-        let reach = half_length(times) * speeds.sum();
-        let mut tubes = TubePair::new(tubes);
+        let t = interval.midpoint();
+        let MiddleShapes { mut tubes, motions, speeds, approach_bound, reach } =
+            MiddleShapes::new(*motions, *names, current, interval.times)?;
         seed(known, &tubes, t);
         let slack = tubes.slack();
         let upper = known.upper();
         let scale = upper.max(known.tolerance).max(0.25 * reach);
-        let moving =
-            MovingPair { motions: carried, seen_from: speeds.seen_from, names: *names, left };
+        let moving = MovingPair { motions, seen_from: speeds.seen_from, names: *names, left };
         let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
         let most = if reach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
         let is_all = tubes.begin(scale, upper + reach + slack, most, beginning, pairs)?;
@@ -255,6 +248,32 @@ impl Minimized for PairClearance<'_, '_> {
 /// bounds: a shorter interval has fewer pairs.
 const MAX_PAIRS_PER_INTERVAL: usize = 1 << 16;
 
+/// Both robots in the middle of an interval, and how they move in it.
+struct MiddleShapes<'p> {
+    tubes: TubePair<'p>,
+    motions: [CarriedMotion<'p>; 2],
+    speeds: PairSpeeds,
+    approach_bound: ApproachBound,
+    /// How much nearer the robots come in half of the interval at most.
+    reach: Real,
+}
+
+impl<'p> MiddleShapes<'p> {
+    fn new(
+        motions: [&'p dyn Motion; 2],
+        names: [&'static str; 2],
+        current: &'p mut [CurrentShape; 2],
+        times: [Real; 2],
+    ) -> Result<Self, ProximityError> {
+        let placed = place_both(motions, names, current, times)?;
+        let speeds = PairSpeeds::new(&placed, names)?;
+        let reach = half_length(times) * speeds.sum();
+        let PlacedShapes { tubes, cap_change, carried } = placed;
+        let approach_bound = ApproachBound::new(times, cap_change);
+        Ok(Self { tubes: TubePair::new(tubes), motions: carried, speeds, approach_bound, reach })
+    }
+}
+
 /// Both robots in their middle shapes.
 struct PlacedShapes<'p> {
     tubes: [PlacedTube<'p>; 2],
@@ -264,7 +283,7 @@ struct PlacedShapes<'p> {
 }
 
 /// Places both robots in their middle shapes.
-fn shapes<'p>(
+fn place_both<'p>(
     motions: [&'p dyn Motion; 2],
     names: [&'static str; 2],
     [first, second]: &'p mut [CurrentShape; 2],
@@ -273,14 +292,14 @@ fn shapes<'p>(
     let carried = motions.map(|motion| CarriedMotion::new(motion, times, half_length(times)));
     let turning = CarriedMotion::least_turning(&carried);
     let [first, second] =
-        [shape(&carried[0], turning[0], first), shape(&carried[1], turning[1], second)];
+        [place(&carried[0], turning[0], first), place(&carried[1], turning[1], second)];
     let (first, change) = first.map_err(|error| error.of_robot(names[0]))?;
     let (second, other) = second.map_err(|error| error.of_robot(names[1]))?;
     Ok(PlacedShapes { tubes: [first, second], cap_change: change.max(other), carried })
 }
 
 /// Places a robot in its middle shape.
-fn shape<'p>(
+fn place<'p>(
     carried: &CarriedMotion,
     turning: Real,
     current: &'p mut CurrentShape,

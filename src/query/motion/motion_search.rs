@@ -4,8 +4,9 @@
 //! - **Middle shape** of an interval of time: the robot's shape at its midpoint t. tau: half of the
 //!   interval.
 //! - **Piece**: a range of shares of a section, the same points of the robot at all times.
-//! - V: an upper bound on the speed of a piece relative to the mesh (`approach_speed`).
-//! - d: the distance of the piece's body in the middle shape.
+//! - V: an upper bound on the speed of a piece relative to the mesh (`approach_bound`).
+//! - d: the computed distance of the piece's body in the middle shape, less the slack of its
+//!   rounding (`refine::placed_tube`).
 //! - **Unresolved** piece: the middle shape does not clear it for the whole interval.
 //!
 //! # Claim
@@ -13,7 +14,7 @@
 //! the margin for max(0, d - margin) / V before and after t.
 //!
 //! **Proof.** Points of the piece are within tau V of where they are at t. Which points of the
-//! piece a body contains is derived in `refine::bounding_body` and `approach_speed`.
+//! piece a body contains is derived in `refine::bounding_body` and `approach_bound`.
 //!
 //! # Algorithm
 //! 1. **Start** with one interval per part of the motion's time, with all pieces.
@@ -28,7 +29,7 @@
 //! 4. **Divide.** The remaining parts of the interval, before and after t, become intervals with
 //!    the unresolved pieces.
 //! 5. **Stop** when no interval is left, at a contact, after [`MAX_SHAPES`] shapes, or a fixed
-//!    number of shapes after the first one near the margin (`progress`).
+//!    number of shapes after the first one near the margin (`intervals`).
 //!
 //! **Moving mesh.** The mesh has a place at each time (`search::hierarchy::moving_mesh`). V is then
 //! the speed of the piece plus the speed of the fastest vertex, since no point of a triangle is
@@ -51,9 +52,9 @@ use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::minimum_rounds::NearestFirst;
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
+use super::pending_piece::{UnresolvedPiece, UnresolvedPieces};
 use super::refinement::refine;
 use super::separating_planes::SeparatingPlanes;
-use super::unresolved_piece::{UnresolvedPiece, UnresolvedPieces};
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::motion::{CarriedMotion, Motion};
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh};

@@ -1,7 +1,7 @@
 //! Two moving robots in an interval of time, in their middle shapes.
 
 use super::approach_bound::Approach;
-use super::approach_speed::ApproachSpeed;
+use super::approach_bound::ApproachSpeed;
 use super::refinement::{BoundedPiece, WorkItem};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;

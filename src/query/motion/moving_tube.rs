@@ -1,14 +1,14 @@
 //! The pieces of one moving robot in an interval of time: their speeds and displacements, relative
 //! to the middle shape.
 
+use super::approach_bound::ApproachSpeed;
 use super::approach_bound::{Approach, midpoint};
-use super::approach_speed::ApproachSpeed;
 use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
+use super::pending_piece::{MAX_DISPLACED_PIECES, UnresolvedPiece, UnresolvedPieces};
 use super::refinement::BoundedPiece;
 use super::relative_motion::RelativeMotion;
 use super::separating_planes::{PlaneTest, SeparatingPlanes};
-use super::unresolved_piece::{MAX_DISPLACED_PIECES, UnresolvedPiece, UnresolvedPieces};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound};

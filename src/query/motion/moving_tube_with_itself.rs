@@ -1,7 +1,7 @@
 //! A moving robot beside itself in an interval of time, in its middle shape.
 
 use super::approach_bound::Approach;
-use super::approach_speed::ApproachSpeed;
+use super::approach_bound::ApproachSpeed;
 use super::refinement::{BoundedPiece, WorkItem};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;

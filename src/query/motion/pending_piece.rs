@@ -1,8 +1,14 @@
-//! A pending piece of a moving robot, independent of the shape.
+//! The pieces of a moving robot that an interval has to test, independent of the shape; and those
+//! that its middle shape does not decide by their speed.
 
 use super::refinement::WorkItem;
+use crate::pair::PlacedLink;
 use crate::refine::{Piece, PlacedTube, TubeInMesh};
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
+
+/// With more unresolved pieces in an interval, displacements are not tested: another shape is
+/// cheaper.
+pub(super) const MAX_DISPLACED_PIECES: usize = 8;
 
 /// A range of shares of a section.
 #[derive(Clone, Copy, Debug)]
@@ -33,4 +39,28 @@ impl WorkItem<TubeInMesh<'_>> for PendingPiece {
             Self { shares: [between.max(from), to], ..self },
         ]
     }
+}
+
+/// The unresolved pieces of the current interval.
+pub(crate) struct UnresolvedPieces<'a> {
+    /// The pieces of earlier intervals, then the pieces of this one.
+    pub pieces: &'a mut Vec<PendingPiece>,
+    /// The index of the first piece of this interval.
+    pub first: usize,
+    /// The bodies of the pieces of this interval, at most [`MAX_DISPLACED_PIECES`] + 1.
+    pub bodies: &'a mut Vec<UnresolvedPiece>,
+}
+
+/// The body of an unresolved piece, while its interval is tested.
+#[derive(Clone)]
+pub(crate) struct UnresolvedPiece {
+    pub body: PlacedLink,
+    /// The distance of the body from the nearest triangle.
+    pub away: Real,
+    /// The direction from that triangle to the body. Zero if they touch; no plane test passes then.
+    pub normal: Vector,
+    /// How much nearer the piece may come in the interval.
+    pub approach: Real,
+    /// The part of `approach` that is not the centreline's: rim and mesh.
+    pub beside: Real,
 }

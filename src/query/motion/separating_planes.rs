@@ -16,7 +16,7 @@
 //! before are tried first, the latest one first: one normal separates most triangles of a wall.
 
 use super::half_displacement::{HalfDisplacement, gap};
-use super::unresolved_piece::UnresolvedPiece;
+use super::pending_piece::UnresolvedPiece;
 use crate::pair::PlacedLink;
 use crate::search::hierarchy::PlacedMeshSearch;
 use parry3d_f64::math::{Real, Vector};

@@ -7,7 +7,6 @@ mod own_faces;
 mod pair_frame;
 mod pair_minima;
 mod robot_with_itself;
-mod self_tube;
 mod tubes;
 mod turn_sums;
 mod two_robots;
@@ -16,6 +15,7 @@ pub(crate) use beyond_arc::{
     BeyondMemory, chain_clears, chain_minimum, tube_clearance, tube_clears,
 };
 pub(crate) use robot_with_itself::{RobotWithItself, SelfMemory};
-pub(crate) use self_tube::{SelfTubeMemory, self_clears_tube};
-pub(crate) use tubes::{TubesMemory, clearance_between, clears_tubes, place_tubes};
+pub(crate) use tubes::{
+    SelfTubeMemory, TubesMemory, clearance_between, clears_tubes, place_tubes, self_clears_tube,
+};
 pub(crate) use two_robots::{PairMemory, TwoRobots};
