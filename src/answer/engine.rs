@@ -12,8 +12,8 @@ pub enum Side {
     Inside,
     /// Proven: |w| < 1/4.
     Outside,
-    /// Neither: the point lies on the surface, within rounding; or a hole of the mesh covers at
-    /// least a quarter of the view from the point.
+    /// Neither: the point lies on the surface, within rounding; or holes of the mesh, or triangles
+    /// that are there twice or face the wrong way, cover at least a quarter of the view from it.
     Undecided,
 }
 

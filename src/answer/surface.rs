@@ -47,8 +47,8 @@ impl SurfaceReport {
     }
 
     /// Returns whether the surface bounds a volume: its winding number is an integer everywhere off
-    /// the surface. It has no openings and no unbalanced edges. Two boxes that share an edge bound a
-    /// volume.
+    /// the surface. It has no openings and no unbalanced edges. Two boxes that share an edge bound
+    /// a volume.
     pub fn bounds_volume(&self) -> bool {
         self.openings.is_empty() && self.unbalanced_edges == 0
     }

@@ -122,7 +122,8 @@ impl Section {
     }
 }
 
-/// Upper bound on the length of a curve over its polyline, if it turns by `bend` per segment.
+/// Upper bound on the length of a curve over its polyline, if it turns by `bend <= 1` per segment
+/// (`samples`, claim 1).
 pub(super) fn stretch(bend: Real) -> Real {
     1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF
 }

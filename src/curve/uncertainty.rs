@@ -26,8 +26,8 @@ impl Tube {
     ///
     /// It applies to the centreline within two radii of the face, by arc length. For a tube by
     /// [`fit`](Self::fit), whose directions were unknown before, bounds become closer and never
-    /// looser. For any other tube the uncertainty of directions grows by `turn`. A turn of pi leaves
-    /// every direction open; more counts as pi.
+    /// looser. For any other tube the uncertainty of directions grows by `turn`. A turn of pi
+    /// leaves every direction open; more counts as pi.
     ///
     /// # Errors
     /// The turn is negative or not finite.

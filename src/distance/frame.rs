@@ -12,10 +12,10 @@ use super::{Closest, Scalar, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<T> {
     origin: Vec3<T>,
-    /// Scales coordinates above 1 down to 1 before the subtraction, so that differences stay
-    /// finite.
+    /// Scales coordinates of 1/2 or more down to between 1/4 and 1/2 before the subtraction, so
+    /// that differences stay finite.
     shrink: T,
-    /// Scales the differences to 1.
+    /// Scales the largest difference to between 1 and 2.
     fit: T,
 }
 

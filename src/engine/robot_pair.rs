@@ -18,14 +18,15 @@ use crate::robot::Chain;
 use crate::threads::with_clones;
 use parry3d_f64::math::{Pose, Real};
 
-/// Exact queries about two robots: the closest links, and whether all links keep a margin.
+/// Queries about two robots, as chains, as tubes and during motions: the closest places, bounds on
+/// the clearance, and whether they keep a margin.
 ///
 /// The last answers warm-start the next query. Any robots and poses may follow; small motions are
 /// answered fastest. A clone copies the memory. Each thread should have its own pair. For one robot
 /// and itself see [`SelfQuery`](super::SelfQuery).
 ///
 /// Each pose places its robot in a common frame; answers are in this frame. Distances are unsigned,
-/// 0 if the robots touch or overlap, and as exact as distances to a mesh.
+/// 0 if the robots touch or overlap. Distances of chains are as exact as distances to a mesh.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::RobotPair};
@@ -69,7 +70,8 @@ impl RobotPair {
         Self::default()
     }
 
-    /// Forgets the last answers: the next query starts without a warm start.
+    /// Forgets the last answers: the next query starts without a warm start. Queries about motions
+    /// always do.
     pub fn forget(&mut self) {
         self.memory.forget();
         self.tubes.forget();

@@ -198,9 +198,9 @@ impl SelfQuery {
     /// centreline. Returns `None` if the tube is shorter than `arc`.
     ///
     /// The distance is that of [`minimum_beyond`](Self::minimum_beyond), for the discs of the
-    /// curve: `lower` <= distance <= `upper`. `arc` and `tolerance` are lengths. The bounds differ by at
-    /// most the tolerance ([`resolved`](RobotClearance::resolved)), unless the samples do not allow
-    /// that or 65,536 pairs of pieces do not suffice.
+    /// curve: `lower` <= distance <= `upper`. `arc` and `tolerance` are lengths. The bounds differ
+    /// by at most the tolerance ([`resolved`](RobotClearance::resolved)), unless the samples do not
+    /// allow that or 65,536 pairs of pieces do not suffice.
     ///
     /// # Errors
     /// - `arc` or the tolerance is negative or NaN.

@@ -57,11 +57,12 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 const TOUCHING: Real = 1e-9;
 /// The same for other shapes, whose contacts come from iterations.
 const ITERATED: Real = 1e-5;
-/// The thickness of the skin, as a share of the radius. A thinner skin stops more bodies before they
-/// touch: they keep the velocity of the whole step and the height of a part of it, so their energy
-/// rises. A thicker one lets a robot that is pressed into a wall sink in deeper. Measured with 0.01,
-/// 0.05 and 0.25: chains thrown onto a half-space rise by 0.005, 0.0047 and 0.0023 lengths; a chain
-/// pressed with 100 times its weight sinks in by 0.06, 0.06 and 0.21 radii (a compound by 0.07).
+/// The thickness of the skin, as a share of the radius. A thinner skin stops more bodies before
+/// they touch: they keep the velocity of the whole step and the height of a part of it, so their
+/// energy rises. A thicker one lets a robot that is pressed into a wall sink in deeper. Measured
+/// with 0.01, 0.05 and 0.25: chains thrown onto a half-space rise by 0.005, 0.0047 and 0.0023
+/// lengths; a chain pressed with 100 times its weight sinks in by 0.06, 0.06 and 0.21 radii (a
+/// compound by 0.07).
 const SKIN: Real = 0.05;
 /// Rounding error of a distance in contact, relative to the largest coordinate.
 const TOUCH_ROUNDING: Real = 64.0 * Real::EPSILON;

@@ -43,7 +43,8 @@ use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, SupportMap};
 
 /// How many times deeper than the overlap a point may be if a constraint has turned the normal; as
-/// in parry.
+/// in parry. A deeper one lies where link and triangle do not meet. The depths of the others are
+/// limited when the contacts of the link are known ([`Met::limit_depths`]).
 const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
@@ -81,12 +82,12 @@ pub(super) struct Met {
 }
 
 impl Met {
-    /// Keeps the closest points of a contact with a turned normal. Limits all depths to `deepest`:
-    /// along a turned normal the way out of a deep overlap may be much longer than the shortest.
-    pub fn keep_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
+    /// Limits all depths along a turned normal to `limit`: the way out of a deep overlap may be
+    /// much longer along it than the shortest.
+    pub fn limit_depths<M, C>(&self, limit: Real, manifold: &mut ContactManifold<M, C>) {
         let (normal1, normal2) = (manifold.local_n1, manifold.local_n2);
         for point in manifold.points.iter_mut().filter(|_| self.is_turned) {
-            let less_deep = deepest - point.dist;
+            let less_deep = limit - point.dist;
             if less_deep > 0.0 {
                 // The triangle's point follows along the normal, so that the pair stays together.
                 if self.link_is_first {
@@ -94,18 +95,18 @@ impl Met {
                 } else {
                     point.local_p1 -= normal1 * less_deep;
                 }
-                point.dist = deepest;
+                point.dist = limit;
             }
         }
     }
 
-    /// Removes the closest points of a contact with a turned normal. Limits all depths to
-    /// `deepest`.
-    pub fn drop_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
+    /// Removes the closest points of a contact with a turned normal, and limits all depths to
+    /// `limit`.
+    pub fn drop_closest<M, C>(&self, limit: Real, manifold: &mut ContactManifold<M, C>) {
         if self.is_turned {
             manifold.points.pop();
         }
-        self.keep_closest(deepest, manifold);
+        self.limit_depths(limit, manifold);
     }
 }
 
@@ -143,7 +144,7 @@ pub(super) fn update<M, C: Default + Copy>(
         }
     };
     let own = in_order(found.normal);
-    let mut constrained = constrained(pos12, rules.constraints, own);
+    let mut constrained = constrain(pos12, rules.constraints, own);
     let of_link = |(n1, n2): (Vector, Vector)| {
         let normal = if link_is_first { n1 } else { n2 };
         // A rotation not quite of unit length must not count as a turn.
@@ -163,7 +164,7 @@ pub(super) fn update<M, C: Default + Copy>(
             Some(side) if found.distance > 0.0 && found.normal.dot(-side) < BESIDE => {
                 return Ok(None);
             }
-            Some(side) => self::constrained(pos12, rules.constraints, in_order(-side)),
+            Some(side) => constrain(pos12, rules.constraints, in_order(-side)),
             None => Constrained { normals: own, is_from_behind: false },
         };
     }
@@ -216,7 +217,8 @@ struct Constrained {
     is_from_behind: bool,
 }
 
-fn constrained(
+/// Passes normals through the constraints (2. of the module).
+fn constrain(
     pos12: &Pose,
     constraints: (Option<&dyn NormalConstraints>, Option<&dyn NormalConstraints>),
     normals: (Vector, Vector),

@@ -121,14 +121,14 @@ where
         check_pair(g1, g2)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        let constraints = (normal_constraints1, normal_constraints2);
-        let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
+        let is_constrained = normal_constraints1.is_some() || normal_constraints2.is_some();
         if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
             // The neighbours of the triangle are unknown.
+            let constraints = (normal_constraints1, normal_constraints2);
             let rules = TriangleRules { constraints, is_free: &|_| false };
             let met = link_triangle_manifold::update(pos12, &pair, &rules, prediction, manifold)?;
             if let Some(met) = met {
-                met.keep_closest(met.dist, manifold);
+                met.limit_depths(met.dist, manifold);
             }
             return Ok(());
         }
@@ -138,7 +138,7 @@ where
         // Find an overlap first, then measure it.
         let within = prediction.max(0.0);
         let is_link = links_of(g1).or(links_of(g2)).is_some();
-        let is_answered = is_free
+        let is_answered = !is_constrained
             && (link_link_manifold::update(pos12, (g1, g2), within, manifold)?
                 || is_link && {
                     let pair = IteratedPair::of(pos12, g1, g2)?;
@@ -150,13 +150,12 @@ where
             if is_link {
                 manifold.mark_shapes_deformed();
             }
-            let (constraints1, constraints2) = constraints;
             inner.contact_manifold_convex_convex(
                 pos12,
                 g1,
                 g2,
-                constraints1,
-                constraints2,
+                normal_constraints1,
+                normal_constraints2,
                 within,
                 manifold,
             )?;

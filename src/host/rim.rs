@@ -25,8 +25,8 @@ fn collect_below(meeting: &mut Meeting, end: usize) {
     let on_plane = |q: Vector| q - centre - normal * height(q);
     for (corner, q) in meeting.triangle.into_iter().enumerate() {
         if on_plane(q).length() <= radius {
-            let names = (feature::CAP[end].into(), PackedFeatureId::vertex(corner as u32));
-            meeting.add(centre + on_plane(q), height(q), names.0, names.1);
+            let name = PackedFeatureId::vertex(corner as u32);
+            meeting.add(centre + on_plane(q), height(q), feature::CAP[end].into(), name);
         }
     }
     for (j, (v, w)) in meeting.edges().into_iter().enumerate() {
@@ -42,8 +42,8 @@ fn collect_below(meeting: &mut Meeting, end: usize) {
             {
                 if 0.0 < share && share < 1.0 {
                     let q = v.lerp(w, share);
-                    let names = (PackedFeatureId::edge(name), PackedFeatureId::edge(j as u32));
-                    meeting.add(centre + on_plane(q), height(q), names.0, names.1);
+                    let [name, edge] = [name, j as u32].map(PackedFeatureId::edge);
+                    meeting.add(centre + on_plane(q), height(q), name, edge);
                 }
             }
         }

@@ -80,7 +80,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
-        Ok(match self.nearest(within(max_dist)?, SearchGoal::Nearest)? {
+        Ok(match self.nearest(max_dist, SearchGoal::Nearest)? {
             None => ClosestPoints::Disjoint,
             Some(nearest) if nearest.distance > 0.0 => {
                 let (point1, point2) = self.points(nearest.on_robot, nearest.on_surface);
@@ -91,7 +91,7 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
-        let Some(nearest) = self.nearest(within(prediction)?, SearchGoal::Nearest)? else {
+        let Some(nearest) = self.nearest(prediction, SearchGoal::Nearest)? else {
             return Ok(None);
         };
         let mut best =
@@ -117,8 +117,10 @@ impl<'a> RobotSurface<'a> {
         Ok((contact.distance <= prediction).then(report))
     }
 
-    /// Returns the closest link and triangle at most `margin` apart.
+    /// Returns the closest link and triangle at most `margin` apart. A negative margin asks for
+    /// overlap, so its bound is 0.
     fn nearest(&self, margin: Real, until: SearchGoal) -> Result<Option<NearestPair>, Unsupported> {
+        let margin = margin.max(0.0);
         match self.surface {
             Surface::Triangle(_) => self.nearest_to_triangle(margin),
             Surface::Mesh(mesh) => self.nearest_in_mesh(mesh, margin, until),
@@ -240,11 +242,6 @@ impl<'a> RobotSurface<'a> {
         };
         Contact::new(point1, point2, normal1, normal2, contact.distance)
     }
-}
-
-/// Returns the search bound for a margin. A negative margin asks for overlap, so its bound is 0.
-fn within(margin: Real) -> Result<Real, Unsupported> {
-    if margin.is_nan() { Err(Unsupported) } else { Ok(margin.max(0.0)) }
 }
 
 /// The error for a visited triangle with a vertex that is NaN or infinite.

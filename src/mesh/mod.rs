@@ -1,11 +1,13 @@
 //! The triangles of a mesh in the form that every engine stores.
 
+mod disjoint_sets;
 mod engine_mesh;
 mod seams;
 mod search_frame;
 mod shared_parts;
 mod triangle_block;
 
+pub(crate) use disjoint_sets::{find_root, unite};
 pub(crate) use engine_mesh::{Mesh, check_triangle, check_vertex, in_range};
 pub(crate) use seams::Seam;
 pub(crate) use search_frame::{SearchFrame, round};

@@ -22,6 +22,7 @@
 //! A closed mesh with equal corners has no open edge and costs one test per edge. Otherwise the
 //! open corners are sorted into a tree of boxes, and each open edge visits the boxes that it meets.
 
+use super::disjoint_sets::{find_root, unite};
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
@@ -113,19 +114,11 @@ impl Touching {
     /// Renumbers the vertices, so that all at one place have the number of the first. Returns
     /// whether any number changed.
     pub(super) fn unite_places(&self, corners: &mut [u32]) -> bool {
-        fn first(corners: &mut [u32], mut vertex: u32) -> u32 {
-            while corners[vertex as usize] != vertex {
-                corners[vertex as usize] = corners[corners[vertex as usize] as usize];
-                vertex = corners[vertex as usize];
-            }
-            vertex
-        }
-        for pair in &self.corners {
-            let [one, other] = pair.map(|vertex| first(corners, vertex));
-            corners[one.max(other) as usize] = one.min(other);
+        for &[one, other] in &self.corners {
+            unite(corners, one, other);
         }
         for vertex in 0..corners.len() as u32 {
-            corners[vertex as usize] = first(corners, vertex);
+            corners[vertex as usize] = find_root(corners, vertex);
         }
         !self.corners.is_empty()
     }

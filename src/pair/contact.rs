@@ -117,16 +117,19 @@ pub(crate) struct PlacedPair {
 struct ContactRows {
     /// The fraction, the normal, the depth and the lever.
     numbers: Rows<8>,
-    /// One bit for each pair, as in [`NearestParts`].
-    caps: [u64; 2],
-    corners: [u64; 3],
-    edges: [u64; 3],
+    /// One bit for each pair: the caps, the corners and the edges, as in [`NearestParts`].
+    parts: [u64; 8],
     has_normal: u64,
     needs_closer_look: u64,
     nearest: NearestRows,
 }
 
 impl PlacedPair {
+    pub(crate) fn new(link: &PlacedLink, corners: [Vector; 3], before: Real) -> Self {
+        let ends = [link.start(), link.end()];
+        Self { ends, radius: link.radius(), flat: link.flat(), corners, before }
+    }
+
     /// Returns the placed link.
     pub(crate) fn link(&self) -> PlacedLink {
         let [start, end] = self.ends;
@@ -190,9 +193,10 @@ impl ContactRows {
         let vector = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
         let is = |bits: u64| bits >> lane & 1 == 1;
         let has_normal = is(self.has_normal);
+        let [start, end, a, b, c, ab, bc, ca] = self.parts.map(is);
         NearestFeatures {
-            link: link_feature(self.caps.map(is)),
-            triangle: triangle_feature(self.corners.map(is), self.edges.map(is)),
+            link: link_feature([start, end]),
+            triangle: triangle_feature([a, b, c], [ab, bc, ca]),
             fraction: number(0),
             normal: has_normal.then(|| vector(1)),
             depth: number(4),
@@ -206,9 +210,7 @@ impl ContactRows {
 fn parts_at(level: Level, pairs: &PairRows, count: usize) -> ContactRows {
     let mut parts = ContactRows {
         numbers: [[0.0; BATCH]; 8],
-        caps: [0; 2],
-        corners: [0; 3],
-        edges: [0; 3],
+        parts: [0; 8],
         has_normal: 0,
         needs_closer_look: 0,
         nearest: NearestRows::new(),
@@ -231,13 +233,8 @@ fn fill<L: Pack<Element = f64>>(
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
         parts.needs_closer_look |=
             L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
-        for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {
-            *bits |= L::bits(masks) << lane;
-        }
-        for (bits, masks) in parts.corners.iter_mut().zip(found.corners) {
-            *bits |= L::bits(masks) << lane;
-        }
-        for (bits, masks) in parts.edges.iter_mut().zip(found.edges) {
+        let ([start, end], [a, b, c], [ab, bc, ca]) = (found.caps, found.corners, found.edges);
+        for (bits, masks) in parts.parts.iter_mut().zip([start, end, a, b, c, ab, bc, ca]) {
             *bits |= L::bits(masks) << lane;
         }
         parts.has_normal |= L::bits(found.has_normal) << lane;

@@ -24,9 +24,9 @@
 //!
 //! **Gap.** Coordinates are below 2. Each is rounded by at most `u` in the input, and once more
 //! relative to the link's start. So two points are at most `2 sqrt(3) 2 u < 7 u` farther apart or
-//! nearer than they should be, and a result errs by less than 9 u more. A gap of at most 16 u
-//! ([`GAP_ROUNDING`]) counts as none: its direction, with any number of digits, is that of the
-//! rounding.
+//! nearer than they should be. A result errs by less than 9 u more, as measured
+//! (`distance/touching.rs`). A gap of at most the sum, 16 u ([`GAP_ROUNDING`]), counts as none: its
+//! direction, with any number of digits, is that of the rounding.
 //!
 //! # Kinks
 //! Fix the normal `n`. The triangle's foremost part is where `<n, .>` is greatest, the link's
@@ -241,9 +241,10 @@ impl<T: Scalar> NearestParts<T> {
     /// **Rounding.** Points of the triangle whose distances `F` differ by rounding, at most 9 u,
     /// may be exchanged. The direction to them then turns by at most `sqrt(2 * 9 u / F)`, as the
     /// rest of the triangle is no nearer. A point at most `2 sqrt(3)` away therefore rises by less
-    /// than `sqrt(216 u / F)`, and one of two points by at most twice that more than the other:
-    /// `sqrt(864 u / F)`. This exceeds the `28 u / F` by which the rounding of the points turns the
-    /// normal.
+    /// than `sqrt(12 * 18 u / F) = sqrt(216 u / F)`, and one of two points by at most twice that
+    /// more than the other: `sqrt(4 * 216 u / F) = sqrt(864 u / F)`. For `F > u` this exceeds the
+    /// `2 sqrt(3) * 8 u / F < 28 u / F` by which rounding turns the normal: 7 u of the points and u
+    /// of their difference. 1024 leaves room for the rounding of this test.
     #[inline(always)]
     fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
         let tie = (self.gap.lit(1024.0 * T::UNIT_ROUNDOFF)).over(self.gap).sqrt();

@@ -3,7 +3,7 @@
 use super::coordinates::{BOUND_ROUNDING, Nearest, Pair, Placed, offset_from_axis};
 use crate::answer::{LinkProximity, Witness};
 use crate::distance::{DoubleDouble, Face, Link, Scalar, Vec3, segment_segment, single};
-use crate::robot::ModifiedCylinder;
+use crate::robot::{ModifiedCylinder, share_along};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A link in the mesh's frame.
@@ -69,9 +69,7 @@ impl PlacedLink {
 
     /// Returns the fraction of the axis, from 0 to 1, that is closest to a point.
     pub(crate) fn share_of(&self, point: Vector) -> Real {
-        let share = (point - self.start).dot(self.along) / self.along.length_squared();
-        // Without a length this is 0 / 0; the comparison turns NaN into 0.
-        if share > 0.0 { share.min(1.0) } else { 0.0 }
+        share_along(point - self.start, self.along)
     }
 
     pub(crate) fn start(&self) -> Vector {

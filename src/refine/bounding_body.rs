@@ -73,8 +73,9 @@
 //! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
 //! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
 //! flat body is then off by `error` once more. So a flat body can be the wider one. If the stated
-//! turn is all that is known of the flat ends, queries also ask as if it were not stated, and
-//! return the better of both (`engine::bvh::clearance`).
+//! turn is all that is known of the flat ends, queries about shapes at rest and `prove_tube` also
+//! ask as if it were not stated, and return the better of both (`engine::bvh::clearance`). Queries
+//! about motions do not.
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 

@@ -11,8 +11,8 @@
 //!   long as the clearance. If both are 0, y is a common point and the tubes overlap.
 //!
 //! # Algorithm
-//! 1. **Begin** with the pairs that are at most `upper` apart (`capsule_tree`). `upper` is the first
-//!    upper bound or the margin: farther pairs cannot change the answer.
+//! 1. **Begin** with the pairs that are at most `upper` apart (`capsule_tree`). `upper` is the
+//!    first upper bound or the margin: farther pairs cannot change the answer.
 //! 2. **Upper bound of a pair** (`found_from`). Start with y between the bodies. Move y to the
 //!    middle of the two tube points found from it; repeat up to [`MAX_MOVES`] times while the sum
 //!    decreases.
@@ -75,9 +75,7 @@ impl PairUpperBound {
         let k = usize::from(speeds[1] > speeds[0]);
         (self.sections[k] as usize, speeds[k])
     }
-}
 
-impl PairUpperBound {
     /// Returns the smaller bound; ties return `self`.
     fn nearer(self, other: Self) -> Self {
         if other.upper < self.upper { other } else { self }

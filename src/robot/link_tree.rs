@@ -112,11 +112,16 @@ impl BoundingCapsule {
 
 /// Returns the distance of a point from a segment, without a rounding margin.
 pub(crate) fn distance_to_segment(point: Vector, start: Vector, end: Vector) -> Real {
-    let axis = end - start;
-    let along = (point - start).dot(axis) / axis.length_squared();
-    // 0 / 0 = NaN if the segment is a point: the comparison turns NaN into 0.
-    let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
-    (point - start - axis * along).length()
+    let (relative, along) = (point - start, end - start);
+    (relative - along * share_along(relative, along)).length()
+}
+
+/// Returns the share of a segment, from 0 to 1, that is closest to a point. `relative`: the point
+/// relative to the segment's start; `along`: its end relative to its start.
+pub(crate) fn share_along(relative: Vector, along: Vector) -> Real {
+    let share = relative.dot(along) / along.length_squared();
+    // Without a length this is 0 / 0; the comparison turns NaN into 0.
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -19,7 +19,9 @@ pub use chain::Chain;
 pub use constant_curvature::{BendingSection, ConstantCurvature};
 pub use error::RobotError;
 pub(crate) use error::number;
-pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
+pub(crate) use link_tree::{
+    BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf, share_along,
+};
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, check_radii};
 pub use modified_cylinder::{Cap, ModifiedCylinder};
 pub use registration::{MatrixError, pose_from_matrix};

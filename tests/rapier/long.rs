@@ -205,8 +205,8 @@ fn piles_stay_above_the_floor_as_parrys_do() {
     }
 }
 
-/// Thrown on a heap they hold one another as parry's do: their overlaps are as deep in the mean, and
-/// no axis passes through another. (The deepest overlap of a heap is chance.)
+/// Thrown on a heap they hold one another as parry's do: their overlaps are as deep in the mean,
+/// and no axis passes through another. (The deepest overlap of a heap is chance.)
 #[test]
 fn a_hundred_chains_are_as_thick_in_a_heap_as_parrys() {
     let [ours, parrys] = [round_chain as Make, capsules].map(|shape| {

@@ -1,6 +1,6 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
-//! wall, a radius or a margin in another unit, points out of order, or a wall without an inside. The
-//! remedy is in the words of the options.
+//! wall, a radius or a margin in another unit, points out of order, or a wall without an inside.
+//! The remedy is in the words of the options.
 
 use crate::number::{all_digits, short};
 use crate::options::Options;

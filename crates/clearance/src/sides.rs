@@ -41,12 +41,11 @@ impl Sides {
             } else {
                 format!("links {first} to {last}")
             };
-            let side = match run[0] {
-                Side::Inside => "inside",
-                Side::Outside => "outside",
-                Side::Undecided => "undecided (on the mesh or in an opening)",
+            let why = match run[0] {
+                Side::Undecided => " (on the mesh or in an opening)",
+                _ => "",
             };
-            runs.push(format!("{links} {side}"));
+            runs.push(format!("{links} {}{why}", name(run[0])));
             first = last + 1;
         }
         runs.join(", ")

@@ -213,8 +213,8 @@ impl Device {
         })
     }
 
-    /// The largest buffer that a kernel can use, in bytes: a power of two, so that a size rounded up
-    /// to one still fits.
+    /// The largest buffer that a kernel can use, in bytes: a power of two, so that a size rounded
+    /// up to one still fits.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);

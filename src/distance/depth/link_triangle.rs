@@ -22,8 +22,8 @@ use super::separation;
 use crate::distance::{Face, Link, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
-/// A bound on the rounding of a distance or a gap, for numbers near one: 16 u
-/// (`distance/touching.rs`).
+/// A bound on the rounding of a distance or a gap, for numbers near one: 16 u.
+/// `distance/touching.rs` measures 8 u, and adds as much where a small distance counts as 0.
 pub(crate) const GAP_ROUNDING: Real = 8.0 * Real::EPSILON;
 
 /// A gap must exceed the best one by this amount to replace it in the least translation.

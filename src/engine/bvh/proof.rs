@@ -13,7 +13,6 @@ use crate::curve::Tube;
 use crate::engine::Proximity;
 use crate::motion::Motion;
 use crate::pair::PlacedRobot;
-use crate::query::check_decision;
 use crate::query::proof::{
     Kind, MAX_BYTES, MIN_PIECE_BYTES, PlaneSearch, Shape, motion_proof, size_of, tube_shape,
     write_proof,
@@ -146,7 +145,6 @@ impl BvhSearch {
         margin: Real,
         resolution: Real,
     ) -> Result<Option<Proof>, ProximityError> {
-        check_decision(margin, resolution)?;
         if !self.clears_motion(motion, margin, resolution)?.is_clear() {
             return Ok(None);
         }

@@ -270,7 +270,7 @@ impl<'a> Context<'a> {
         (MeshSearch::new(self.level, &self.mesh.hierarchy, scratch), answers)
     }
 
-    fn per_link(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {
+    pub fn per_link(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {
         let (search, last) = self.search();
         per_link(search, robot, &mut last.per_link, out);
     }

@@ -1,12 +1,14 @@
 //! Inside or outside, as [`BvhSearch`] answers it.
 //!
-//! The side of a point is its winding number ([`Winding`]). Links that touch neither the mesh nor
-//! the lid of an opening ([`Surface`](crate::query::side::Surface)) are on the same side.
+//! The side of a point is its winding number ([`Winding`]). Consecutive links that touch neither
+//! the mesh nor the lid of an opening ([`Surface`](crate::query::side::Surface)) are on one side.
 
 use super::search::BvhSearch;
 use crate::answer::{InsideAnswer, ProximityError, Side, SurfaceReport};
+#[cfg(doc)]
 use crate::engine::Proximity;
 use crate::pair::PlacedRobot;
+use crate::query::check_margin;
 use crate::query::side::Winding;
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -41,8 +43,8 @@ impl BvhSearch {
         Winding { mesh, tree, fields: prepared.far_fields(), point }.side()
     }
 
-    /// Returns what the mesh is as a surface: its openings, the widest first, edges of more than
-    /// two triangles, and edges whose triangles face opposite ways.
+    /// Returns what the mesh is as a surface: its openings, the widest first, and the edges that
+    /// make its sides doubtful.
     ///
     /// The first query builds it, and so does the first one after
     /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has built it.
@@ -93,8 +95,9 @@ impl BvhSearch {
         pose: &Pose,
         margin: Real,
     ) -> Result<InsideAnswer, ProximityError> {
-        let clears = self.clears(robot, pose, margin)?;
+        check_margin(margin)?;
         let placed = PlacedRobot::new(robot, pose)?;
+        let clears = self.context().clears(placed, margin);
         let [base, tip] = placed.ends();
         let base = self.side(base);
         // Both ends of a robot that touches no sound surface are on one side.
@@ -135,8 +138,8 @@ impl BvhSearch {
     ) -> Result<(), ProximityError> {
         out.clear();
         let (mut links, mut lids) = (Vec::new(), Vec::new());
-        self.per_link(robot, pose, &mut links)?;
         let placed = PlacedRobot::new(robot, pose)?;
+        self.context().per_link(placed, &mut links);
         self.context().per_link_of_lids(placed, &mut lids);
         let mut touches = vec![false; links.len()];
         for link in links.iter().chain(&lids) {

@@ -120,13 +120,8 @@ impl<'a> ContactCollector<'a> {
             // Both are in the order of links.
             while links.next_if(|at| at.number < found.link as usize).is_some() {}
             let link = links.peek().map_or_else(|| robot.link(found.link as usize), |at| at.link);
-            PlacedPair {
-                ends: [link.start(), link.end()],
-                radius: link.radius(),
-                flat: link.flat(),
-                corners: wall.mesh.corners(found.witness.triangle),
-                before: robot.length_before(found.link as usize),
-            }
+            let corners = wall.mesh.corners(found.witness.triangle);
+            PlacedPair::new(&link, corners, robot.length_before(found.link as usize))
         };
         let first = self.out.len();
         add_contacts(level, &self.memory.found, placed_pair, self.out);

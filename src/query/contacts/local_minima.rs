@@ -109,8 +109,9 @@
 
 use super::long_rings::{LongRings, SHORT_RING};
 use super::triangle_candidates::NearLink;
-use crate::mesh::{PARTS, ends_of};
+use crate::mesh::{PARTS, ends_of, find_root};
 use crate::pair::{Measurement, Nearest, PlacedLink, rounding};
+use crate::robot::share_along;
 use parry3d_f64::math::{Real, Vector};
 
 /// The rank of all culled triangles: they count as one piece, nearer than any other.
@@ -217,8 +218,8 @@ impl Sweep<'_> {
         for rank in 1..=self.ranked.len() {
             self.add(rank as u32);
         }
-        let pieces = self.ranked.iter().zip(&self.piece[1..]).zip(1..);
-        pieces.filter(|((_, piece), rank)| *piece == rank).map(|((ranked, _), _)| &ranked.nearest)
+        let ranks = (1..self.piece.len()).filter(|&rank| self.piece[rank] == rank as u32);
+        ranks.map(|rank| &self.ranked[rank - 1].nearest)
     }
 
     /// Starts a piece at the triangle of a rank, and merges it with the pieces of nearer triangles
@@ -231,8 +232,14 @@ impl Sweep<'_> {
         let (known, shared) = (near.candidates.triangles[candidate], mesh.parts());
         let corners = mesh.corners(nearest.triangle);
         let is_loose = shared.is_loose(nearest.triangle);
-        // Which piece it meets at which part, and whether its least point is on that part.
-        let (mut met, mut count) = ([(0, CULLED, false); 2 * PARTS], 0);
+        let gaps = match is_loose {
+            true => mesh.indices()[nearest.triangle as usize].map(|end| shared.gap(end)),
+            false => [0.0; 3],
+        };
+        let gap_of = |part| ends_of(gaps, part).into_iter().fold(0.0, Real::max);
+        // Parts with the least point come first: they are met at the triangle's own distance. The
+        // others are kept, with the rank that is met.
+        let (mut others_met, mut count) = ([(0, CULLED); 2 * PARTS], 0);
         for part in (0..PARTS).filter(|&part| is_loose || !known.is_beyond(part)) {
             let add = |ring: &mut SweepRing, other: u32, index: Option<usize>| match index {
                 Some(index) => {
@@ -248,36 +255,32 @@ impl Sweep<'_> {
             if others.next().is_some() {
                 ring = *self.rings.ring_of(near, [candidate, part], add);
             }
-            // If a culled triangle is certainly farther than this one, so is each part that they
-            // share.
+            // A culled triangle whose lower bound is at least this one's upper bound is as far, and
+            // so is each part that they share.
             let meets_culled = ring.has_culled || ring.culled_lower < known.upper;
             let first = ring.first;
             let met_ranks = [meets_culled.then_some(CULLED), (first < rank).then_some(first)];
-            if met_ranks == [None; 2] {
-                continue;
-            }
-            let holds_least_point = is_on(nearest.on_mesh, ends_of(corners, part), own_rounding);
             for with in met_ranks.into_iter().flatten() {
-                met[count] = (part, with, holds_least_point);
-                count += 1;
-            }
-        }
-        let gaps = match is_loose {
-            true => mesh.indices()[nearest.triangle as usize].map(|end| shared.gap(end)),
-            false => [0.0; 3],
-        };
-        // Parts with the least point come first: they are met at the triangle's own distance.
-        for met_there in [true, false] {
-            for &(part, with, holds_least_point) in &met[..count] {
-                if holds_least_point == met_there {
-                    let [one, other] = ends_of(gaps, part);
-                    let gap = one.max(other);
-                    self.meet([rank, with], ends_of(corners, part), gap, holds_least_point);
+                if find_root(self.piece, with) == find_root(self.piece, rank) {
+                    continue;
+                }
+                let ends = ends_of(corners, part);
+                if is_on(nearest.on_mesh, ends, own_rounding) {
+                    self.meet([rank, with], ends, gap_of(part), true);
+                } else {
+                    others_met[count] = (part, with);
+                    count += 1;
                 }
             }
-            if is_loose {
-                self.meet_across_seams(rank, met_there);
-            }
+        }
+        if is_loose {
+            self.meet_across_seams(rank, true);
+        }
+        for &(part, with) in &others_met[..count] {
+            self.meet([rank, with], ends_of(corners, part), gap_of(part), false);
+        }
+        if is_loose {
+            self.meet_across_seams(rank, false);
         }
     }
 
@@ -361,32 +364,9 @@ impl SweepRing {
     }
 }
 
-/// Returns true if a point lies on a segment, within rounding.
+/// Returns true if a point lies on a segment, within half of `rounding`: the rounding of a distance
+/// (`pair::measure_batch`) is twice that of a point.
 fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
     let (edge, relative) = (to - from, point - from);
-    let share = relative.dot(edge) / edge.length_squared();
-    // For a segment without length this is 0 / 0; the comparison turns NaN into 0.
-    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    (relative - edge * share).abs().max_element() <= 0.5 * rounding
-}
-
-/// Returns the first item of a set, and halves the path to it.
-#[inline(always)]
-pub(crate) fn find_root(joined: &mut [u32], mut item: u32) -> u32 {
-    while joined[item as usize] != item {
-        let next = joined[item as usize];
-        joined[item as usize] = joined[next as usize];
-        item = next;
-    }
-    item
-}
-
-/// Unites the sets of two items. Returns the first item of the united set, then the former first
-/// item of the other set; both are equal if the items were in one set.
-#[inline(always)]
-pub(crate) fn unite(joined: &mut [u32], one: u32, other: u32) -> [u32; 2] {
-    let (one, other) = (find_root(joined, one), find_root(joined, other));
-    let firsts = [one.min(other), one.max(other)];
-    joined[firsts[1] as usize] = firsts[0];
-    firsts
+    (relative - edge * share_along(relative, edge)).abs().max_element() <= 0.5 * rounding
 }

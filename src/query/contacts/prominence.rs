@@ -18,8 +18,12 @@
 //!    margin is kept, and so are both sides of a groove.
 //! 2. *No shallow minimum stays*: a path from a kept minimum to a nearer one with such a normal
 //!    rises by at least p, or leaves the margin.
-//! 3. *The choice is unique* with properties 1 and 2, because it is made from the nearest minimum
-//!    on.
+//! 3. *The choice is unique* with properties 1 and 2.
+//!
+//! **Proof.** 1 and 2 repeat the definition, which asks only about nearer minima. So whether the
+//! k-th minimum is kept follows from the choice among the k - 1 before it: 3 by induction. Minima
+//! at equal distances are taken in the order of the contacts. The nearest minimum of a piece has
+//! no nearer one there to reach.
 //!
 //! # Passes
 //! The part of a triangle within a distance c is convex, because the link is. So two triangles are
@@ -50,7 +54,8 @@
 //!   piece.
 //! - Only a kept minimum is flooded over the whole piece below `d(C) + p`. A triangle is at the rim
 //!   of few such pieces: the kept minima of one piece differ in their normals by more than 60
-//!   degrees, and at most a dozen directions can do so. So the cost of kept minima grows with the
+//!   degrees, and fewer than a dozen directions can do so (12 spheres at most touch one of their
+//!   size). So the cost of kept minima grows with the
 //!   triangles less than p above a minimum, and at most with the triangles within the margin.
 //! - A dropped minimum may go around the whole rim of such a piece before it meets its
 //!   representative, but mostly that is beside it. It tests the kept minima of a piece in turn, the
@@ -71,10 +76,10 @@
 //! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached.
 //! 6. Either way the closed triangles become open for the next, greater distance.
 
-use super::local_minima::{NONE, find_root, unite};
+use super::local_minima::NONE;
 use super::triangle_candidates::NearLink;
 use crate::answer::Contact;
-use crate::mesh::{Seam, ends_of};
+use crate::mesh::{Seam, ends_of, find_root, unite};
 use crate::pair::{Height, PlacedLink, measure_points, measure_segments};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -95,8 +100,8 @@ pub(crate) struct ContactQuery {
 #[derive(Clone, Default)]
 pub(super) struct Prominence {
     flood: Flood,
-    /// The kept minima.
-    kept: Vec<u32>,
+    /// The kept minima of the link, the last representative first.
+    of_link: Vec<u32>,
 }
 
 impl Prominence {
@@ -114,9 +119,9 @@ impl Prominence {
             are_prominent.extend(contacts.iter().map(|_| true));
             return;
         }
-        let Self { flood, kept } = self;
+        let Self { flood, of_link } = self;
         flood.begin(neighbourhood);
-        kept.clear();
+        of_link.clear();
         for (minimum, contact) in (0..).zip(contacts) {
             let is_near = contact.normal.is_some() && neighbourhood.holds(contact.witness.triangle);
             let represents = |other: u32| {
@@ -125,11 +130,11 @@ impl Prominence {
             };
             let below = contact.distance + prominence;
             let is_dropped = is_near
-                && is_represented(kept, represents)
+                && is_represented(of_link, represents)
                 && flood.reaches(level, neighbourhood, contact.witness.triangle, below, represents);
             if is_near && !is_dropped {
                 flood.keep(neighbourhood, contact.witness.triangle, minimum);
-                kept.push(minimum);
+                of_link.push(minimum);
             }
             are_prominent.push(!is_dropped);
         }
@@ -163,6 +168,7 @@ struct Flood {
     /// Union-find: for each reached triangle an earlier one of the same piece, or itself.
     joined: Vec<u32>,
     /// For the first triangle of each piece: the open triangles, and the kept minima of the piece.
+    /// Between calls each reached triangle with a part that was no pass is open.
     open: DisjointLists,
     kept: DisjointLists,
     /// The open triangles of the current step, and the closed triangles.
@@ -190,7 +196,7 @@ struct Corner {
 
 impl Flood {
     /// Starts again for a link, without reached triangles.
-    pub(super) fn begin(&mut self, neighbourhood: LinkNeighbourhood) {
+    fn begin(&mut self, neighbourhood: LinkNeighbourhood) {
         let mesh = neighbourhood.near.wall.mesh;
         self.of_triangle.resize(mesh.len(), 0);
         self.of_vertex.resize(mesh.vertices().len(), 0);
@@ -203,37 +209,37 @@ impl Flood {
     }
 
     /// Adds a kept minimum at a near triangle.
-    pub(super) fn keep(&mut self, neighbourhood: LinkNeighbourhood, triangle: u32, minimum: u32) {
+    fn keep(&mut self, neighbourhood: LinkNeighbourhood, triangle: u32, minimum: u32) {
         let item = self.reach(neighbourhood, triangle);
         self.kept.put(find_root(&mut self.joined, item), minimum);
     }
 
     /// Returns true if a path below the distance `below` leads from a triangle to a kept minimum
-    /// for which `stands_for` holds. `below` must not decrease from call to call.
-    pub(super) fn reaches(
+    /// that `represents` it. `below` must not decrease from call to call.
+    fn reaches(
         &mut self,
         level: Level,
         neighbourhood: LinkNeighbourhood,
         triangle: u32,
         below: Real,
-        stands_for: impl Fn(u32) -> bool,
+        represents: impl Fn(u32) -> bool,
     ) -> bool {
         let item = self.reach(neighbourhood, triangle);
         self.closed.clear();
-        // The closed triangles whose edges have been followed.
-        let mut ended = 0;
+        // How many closed triangles have had their edges followed.
+        let mut followed = 0;
         let is_reached = loop {
             let piece = find_root(&mut self.joined, item);
-            if self.kept.find(piece, &stands_for) {
+            if self.kept.find(piece, &represents) {
                 break true;
             }
             self.wave.clear();
             self.open.take(piece, &mut self.wave);
             if !self.wave.is_empty() {
                 self.follow_corners(level, neighbourhood, below);
-            } else if ended < self.closed.len() {
-                self.follow_edges(level, neighbourhood, below, ended);
-                ended = self.closed.len();
+            } else if followed < self.closed.len() {
+                self.follow_edges(level, neighbourhood, below, followed);
+                followed = self.closed.len();
             } else {
                 break false;
             }
@@ -444,18 +450,18 @@ struct DisjointLists {
 
 impl DisjointLists {
     /// Removes all lists and numbers.
-    pub(super) fn clear(&mut self) {
+    fn clear(&mut self) {
         self.ends.clear();
         self.next.clear();
     }
 
     /// Adds an empty list; lists are numbered in order.
-    pub(super) fn begin(&mut self) {
+    fn begin(&mut self) {
         self.ends.push([NONE; 2]);
     }
 
     /// Prepends a number that is in no list.
-    pub(super) fn put(&mut self, list: u32, number: u32) {
+    fn put(&mut self, list: u32, number: u32) {
         let (at, number_at) = (list as usize, number as usize);
         let [head, tail] = self.ends[at];
         self.next.resize(self.next.len().max(number_at + 1), NONE);
@@ -464,7 +470,7 @@ impl DisjointLists {
     }
 
     /// Appends the numbers of the list `from` to the list `to`, and empties `from`.
-    pub(super) fn append(&mut self, from: u32, to: u32) {
+    fn append(&mut self, from: u32, to: u32) {
         let [head, tail] = std::mem::replace(&mut self.ends[from as usize], [NONE; 2]);
         if head == NONE {
             return;
@@ -479,7 +485,7 @@ impl DisjointLists {
     }
 
     /// Moves the numbers of a list to the end of `out`.
-    pub(super) fn take(&mut self, list: u32, out: &mut Vec<u32>) {
+    fn take(&mut self, list: u32, out: &mut Vec<u32>) {
         let [mut at, _] = std::mem::replace(&mut self.ends[list as usize], [NONE; 2]);
         while at != NONE {
             out.push(at);
@@ -489,7 +495,7 @@ impl DisjointLists {
 
     /// Returns true if `is_such` holds for a number of a list, and moves the first such number to
     /// the front.
-    pub(super) fn find(&mut self, list: u32, is_such: impl Fn(u32) -> bool) -> bool {
+    fn find(&mut self, list: u32, is_such: impl Fn(u32) -> bool) -> bool {
         let [head, tail] = self.ends[list as usize];
         let (mut before, mut at) = (NONE, head);
         while at != NONE && !is_such(at) {
@@ -516,7 +522,7 @@ pub(super) struct LinkNeighbourhood<'a> {
 impl LinkNeighbourhood<'_> {
     /// Returns true if a triangle may be within the margin.
     #[inline(always)]
-    pub(super) fn holds(&self, triangle: u32) -> bool {
+    fn holds(&self, triangle: u32) -> bool {
         self.near.index_of(triangle).is_some() || self.near.is_culled(triangle)
     }
 
@@ -542,7 +548,8 @@ impl LinkNeighbourhood<'_> {
 /// If the distance does not fall from an end on, that end is nearest. Otherwise it lies above both
 /// tangents `d1 + s g1` and `d2 + (1 - s) g2`, which cross at `s = (d2 + g2 - d1) / (g1 + g2)`.
 ///
-/// **Rounding.** W turns by the ratio of its rounding to d.
+/// **Rounding.** W errs by less than `2 rounding`, so it turns by less than `4 rounding / d`. The two
+/// distances and the bound itself err by less than `4 rounding` together.
 fn lower_between([one, other]: [&Height; 2], along: Vector) -> Option<Real> {
     let rounding = one.rounding.max(other.rounding);
     let turned = 4.0 * rounding * along.length() / one.distance.min(other.distance);

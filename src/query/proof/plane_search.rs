@@ -87,7 +87,7 @@ impl<'a> PlaneSearch<'a> {
         }
         let (triangles, pieces) = (self.groups.get(group).triangles.len(), run.len());
         let [low, high] = self.groups.get(group).bounds;
-        let is_larger = (high - low).length_squared() >= size_of(&bodies[run.clone()]);
+        let is_larger = (high - low).length_squared() >= squared_diagonal(&bodies[run.clone()]);
         if triangles > 1 && (pieces == 1 || is_larger) {
             steps.push(Step::Triangles);
             let halves = self.groups.halves(group);
@@ -107,12 +107,13 @@ impl<'a> PlaneSearch<'a> {
         let wall = self.groups.get(group);
         let most = bodies.iter().flat_map(|body| body.ends).map(|end| end.abs().max_element());
         let most = most.fold(wall.reach(), Real::max);
-        let parts = |q: Vector| {
-            let level = wall.level(q);
-            bodies.iter().all(|body| body.is_below(q, level, most))
+        let separates = |q: Vector| {
+            let offset = wall.offset(q);
+            bodies.iter().all(|body| body.is_below(q, offset, most))
         };
-        let try_along =
-            |way: Vector| BITS.iter().filter_map(|&bits| in_bits(way, bits)).find(|q| parts(*q));
+        let try_along = |way: Vector| {
+            BITS.iter().filter_map(|&bits| in_bits(way, bits)).find(|q| separates(*q))
+        };
         let found = between_hulls(wall, bodies).and_then(try_along).or_else(|| {
             let (&[triangle], [body]) = (&*wall.triangles, bodies) else { return None };
             let ways = between_pair(self.level, self.groups.mesh, triangle, body);
@@ -130,28 +131,37 @@ fn in_bits(way: Vector, bits: u32) -> Option<Vector> {
 }
 
 /// Returns the squared diagonal of the bounding box of the bodies' ends.
-fn size_of(bodies: &[ProofBody]) -> Real {
-    let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
-    let ends = bodies.iter().flat_map(|body| body.ends);
-    let [low, high] = ends.fold(nothing, |[low, high], end| [low.min(end), high.max(end)]);
+fn squared_diagonal(bodies: &[ProofBody]) -> Real {
+    let [low, high] = box_around(NOWHERE, bodies.iter().flat_map(|body| &body.ends));
     (high - low).length_squared()
+}
+
+/// The corners of a box that contains nothing.
+const NOWHERE: [Vector; 2] = [Vector::INFINITY, Vector::NEG_INFINITY];
+
+/// Returns the corners of a box, extended by points.
+fn box_around<'a>(
+    corners: [Vector; 2],
+    points: impl IntoIterator<Item = &'a Vector>,
+) -> [Vector; 2] {
+    points.into_iter().fold(corners, |[low, high], point| [low.min(*point), high.max(*point)])
 }
 
 /// The groups of a mesh that the search has used.
 struct Groups<'a> {
-    pub(super) mesh: &'a Mesh,
+    mesh: &'a Mesh,
     /// The least coordinates of each triangle.
     low: Vec<[Real; 3]>,
     groups: Vec<Group>,
 }
 
 /// A set of triangles.
-pub(super) struct Group {
-    pub triangles: Vec<u32>,
+struct Group {
+    triangles: Vec<u32>,
     /// Their vertices without duplicates.
-    pub vertices: Vec<Vector>,
+    vertices: Vec<Vector>,
     /// The corners of their bounding box.
-    pub bounds: [Vector; 2],
+    bounds: [Vector; 2],
     halves: Option<[usize; 2]>,
 }
 
@@ -159,7 +169,7 @@ pub(super) struct Group {
 const ALL: usize = 0;
 
 impl<'a> Groups<'a> {
-    pub(crate) fn new(mesh: &'a Mesh) -> Self {
+    fn new(mesh: &'a Mesh) -> Self {
         let low = |triangle: u32| {
             let [a, b, c] = mesh.corners(triangle);
             // Maps -0 to 0.
@@ -171,7 +181,7 @@ impl<'a> Groups<'a> {
         groups
     }
 
-    pub(super) fn get(&self, group: usize) -> &Group {
+    fn get(&self, group: usize) -> &Group {
         &self.groups[group]
     }
 
@@ -183,14 +193,13 @@ impl<'a> Groups<'a> {
         vertices.dedup();
         let vertices: Vec<_> =
             vertices.iter().map(|&vertex| self.mesh.vertices()[vertex as usize]).collect();
-        let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
-        let bounds = vertices.iter().fold(nothing, |[low, high], &v| [low.min(v), high.max(v)]);
+        let bounds = box_around(NOWHERE, &vertices);
         self.groups.push(Group { triangles, vertices, bounds, halves: None });
         self.groups.len() - 1
     }
 
     /// Returns the two halves of a group of more than one triangle.
-    pub(super) fn halves(&mut self, group: usize) -> [usize; 2] {
+    fn halves(&mut self, group: usize) -> [usize; 2] {
         if let Some(halves) = self.groups[group].halves {
             return halves;
         }
@@ -216,13 +225,14 @@ impl<'a> Groups<'a> {
 
 impl Group {
     /// Returns the largest magnitude of a coordinate.
-    pub(super) fn reach(&self) -> Real {
+    fn reach(&self) -> Real {
         self.bounds[0].abs().max(self.bounds[1].abs()).max_element()
     }
 
-    /// Returns the least q . v over the vertices.
-    pub(super) fn level(&self, q: Vector) -> Real {
-        self.vertices.iter().fold(Real::INFINITY, |level, vertex| level.min(q.dot(*vertex)))
+    /// Returns the least q . v over the vertices: the offset of the farthest plane q . x = offset
+    /// behind which the bodies may lie.
+    fn offset(&self, q: Vector) -> Real {
+        self.vertices.iter().fold(Real::INFINITY, |offset, vertex| offset.min(q.dot(*vertex)))
     }
 }
 
@@ -248,8 +258,7 @@ impl SupportMap for PointSet<'_> {
 /// (parry's GJK); `None` if they touch.
 fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vector> {
     let ends = bodies.iter().flat_map(|body| &body.ends);
-    let [low, high] =
-        ends.clone().fold(group.bounds, |[low, high], &end| [low.min(end), high.max(end)]);
+    let [low, high] = box_around(group.bounds, ends.clone());
     let size = (high - low).max_element();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
     let centre = 0.5 * low + 0.5 * high;
@@ -268,8 +277,7 @@ fn between_pair(level: Level, mesh: &Mesh, triangle: u32, body: &ProofBody) -> [
     let (corners, [start, end]) = (mesh.corners(triangle), body.ends);
     let link = PlacedLink::between(start, end, body.radius, body.flat);
     let answer: LinkProximity = link.answer(0, &link.measure(triangle, corners));
-    let place =
-        PlacedPair { ends: body.ends, radius: body.radius, flat: body.flat, corners, before: 0.0 };
+    let place = PlacedPair::new(&link, corners, 0.0);
     let mut contacts = Vec::new();
     add_contacts(level, &[answer], |_| place, &mut contacts);
     let from_features = contacts.first().and_then(|contact| contact.normal).map(|normal| -normal);
@@ -292,9 +300,9 @@ pub(crate) struct ProofBody {
 }
 
 impl ProofBody {
-    /// Whether the body and the free space around it certainly lie below the plane q . x = level.
+    /// Whether the body and the free space around it certainly lie below the plane q . x = offset.
     /// `most` bounds the coordinates of the ends and of points on the plane.
-    fn is_below(&self, q: Vector, level: Real, most: Real) -> bool {
+    fn is_below(&self, q: Vector, offset: Real, most: Real) -> bool {
         let slack = 16.0 * f64::UNIT_ROUNDOFF;
         let (length, sum) = (q.length(), q.abs().element_sum());
         let axis = self.axis;
@@ -310,7 +318,7 @@ impl ProofBody {
             let reach = self.radius * if is_disc { across.min(length) } else { length };
             let needed =
                 (reach + self.around * length) * (1.0 + slack) + self.radius * length * slack;
-            let below = level - q.dot(*end);
+            let below = offset - q.dot(*end);
             below > needed + 2.0 * slack * sum * most + sum * Real::MIN_POSITIVE
         })
     }

@@ -3,7 +3,8 @@
 //! # Definitions
 //! - *face*: a triangle whose corners are at three different places. Other triangles have no edges.
 //! - *edge*: a stretch of a face's side between two places of corners. Corners that lie on an open
-//!   side within rounding divide it (`mesh/seams.rs`). So the faces at a T-vertex share their edges.
+//!   side within rounding divide it (`mesh/seams.rs`). So the faces at a T-vertex share their
+//!   edges.
 //! - *boundary edge*: an edge of exactly one face.
 //! - *opening*: boundary edges that are connected by their corners, unless they are a seam.
 //! - *seam*: boundary edges within [`SEAM_WIDTH`] of one line, such as those between corners that
@@ -22,7 +23,7 @@
 
 use crate::answer::{Opening, SurfaceReport};
 use crate::distance::Scalar;
-use crate::mesh::{Mesh, PARTS, SharedParts, ends_of};
+use crate::mesh::{Mesh, PARTS, SharedParts, ends_of, find_root, unite};
 use crate::robot::{direction, length};
 use crate::search::hierarchy::Hierarchy;
 use fearless_simd::Level;
@@ -155,21 +156,12 @@ fn groups(mut edges: Vec<[u32; 2]>, places: usize) -> Vec<Vec<[u32; 2]>> {
     if edges.is_empty() {
         return Vec::new();
     }
-    // Union by path halving: each place leads to the root of its group.
-    let mut towards: Vec<_> = (0..places as u32).collect();
-    let root = |towards: &mut [u32], mut place: u32| {
-        while towards[place as usize] != place {
-            towards[place as usize] = towards[towards[place as usize] as usize];
-            place = towards[place as usize];
-        }
-        place
-    };
+    let mut joined: Vec<_> = (0..places as u32).collect();
     for &[from, to] in &edges {
-        let [from, to] = [from, to].map(|place| root(&mut towards, place));
-        towards[from.max(to) as usize] = from.min(to);
+        unite(&mut joined, from, to);
     }
-    edges.sort_by_key(|edge| root(&mut towards, edge[0]));
-    let mut group = |edge: &[u32; 2]| root(&mut towards, edge[0]);
+    let mut group = |edge: &[u32; 2]| find_root(&mut joined, edge[0]);
+    edges.sort_by_key(&mut group);
     edges.chunk_by(|one, other| group(one) == group(other)).map(<[_]>::to_vec).collect()
 }
 

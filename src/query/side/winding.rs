@@ -8,7 +8,6 @@ use crate::distance::Scalar;
 use crate::distance::lanes::Lane;
 use crate::mesh::Mesh;
 use crate::search::hierarchy::{Child, WideBvh};
-use crate::threads::each;
 use parry3d_f64::math::{Real, Vector};
 use std::f64::consts::PI;
 
@@ -32,17 +31,18 @@ pub(crate) struct FarFields {
 }
 
 impl FarFields {
+    /// One thread builds them, because others may wait for it ([`Lazy`](crate::threads::Lazy)).
     pub(crate) fn new<E: Lane>(tree: &WideBvh<E>, mesh: &Mesh) -> Self {
         let [low, high] = mesh.bounds();
         let scale = (high - low).max_element().power_of_two_to_unity();
         let of = |child: Child| {
             FarField::new(scale, tree.triangles_below(child).map(|triangle| mesh.corners(triangle)))
         };
-        let mut nodes = vec![FarField::default(); tree.nodes.len()];
-        let mut leaves = vec![FarField::default(); tree.leaves.len()];
-        each(&mut nodes, |node, field| *field = of(Child::Node(node as u32)));
-        each(&mut leaves, |leaf, field| *field = of(Child::Leaf(leaf as u32)));
-        Self { scale, nodes, leaves }
+        Self {
+            scale,
+            nodes: (0..tree.nodes.len() as u32).map(|node| of(Child::Node(node))).collect(),
+            leaves: (0..tree.leaves.len() as u32).map(|leaf| of(Child::Leaf(leaf))).collect(),
+        }
     }
 
     fn of(&self, child: Child) -> &FarField {

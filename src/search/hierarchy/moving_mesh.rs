@@ -25,6 +25,7 @@ use crate::answer::Work;
 use crate::distance::Scalar;
 use crate::mesh::Mesh;
 use crate::pair::{Best, PlacedLink};
+use crate::robot::share_along;
 use parry3d_f64::math::{Real, Vector};
 
 /// The ranges of the three coordinates in a box.
@@ -299,10 +300,7 @@ impl Axis {
         let middle = self.along * 0.5;
         let gaps = ((relative - middle).abs() - middle.abs() - half).max(Vector::ZERO);
         // The plane through the nearest point of the axis, with its normal towards the centre.
-        let place = relative.dot(self.along) / self.along.length_squared();
-        // Without a length this is 0 / 0; the comparison turns NaN into 0.
-        let place = if place > 0.0 { place.min(1.0) } else { 0.0 };
-        let ahead = relative - self.along * place;
+        let ahead = relative - self.along * share_along(relative, self.along);
         let away = ahead.length();
         let beyond = if away > 0.0 {
             let normal = ahead / away;

@@ -51,9 +51,9 @@ impl Mesh {
     /// There is a doubt if points and mesh state different frames, if the box of the points is a
     /// hundred times smaller or larger than the mesh's, if the two boxes do not overlap, or if the
     /// largest radius is not between 1/5000 and 1/10 of the diagonal of the mesh's box (0 is not
-    /// doubted). Each names what would help, if a change of frame or unit would. A margin is doubted
-    /// if it is less than 1/10,000 of that diagonal, and a robot if it turns by more than 90 degrees
-    /// at a point. There are also the doubts of `surface`: an open mesh, for example.
+    /// doubted). Each names what would help, if a change of frame or unit would. A margin is
+    /// doubted if it is less than 1/10,000 of that diagonal, and a robot if it turns by more than
+    /// 90 degrees at a point. There are also the doubts of `surface`: an open mesh, for example.
     ///
     /// Parameters
     /// ----------

@@ -206,8 +206,8 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The name is taken, the margin is negative or NaN, the pose is not rigid, or the structure
-    ///     is solid and its mesh is open. If the mesh opens later, queries raise that.
+    ///     The name is taken, the margin is negative or NaN, the pose is not rigid, or the
+    ///     structure is solid and its mesh is open. If the mesh opens later, queries raise that.
     ///
     /// Examples
     /// --------

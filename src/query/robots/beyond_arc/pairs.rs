@@ -33,12 +33,13 @@
 //!
 //! # Nearest discs on the clipping line
 //! Links are straight. So the set of all (q, p, p') with p and p' in the two discs at the place q
-//! of the line is convex, and the least distance f(q) of two discs is a convex function. Its slope is
-//! <n, dD/dq> for the direction n between the nearest points. [`polish`] bisects by its sign.
+//! of the line is convex, and the least distance f(q) of two discs is a convex function. Its slope
+//! is <n, dD/dq> for the direction n between the nearest points. [`polish`] bisects by its sign.
 
 use super::parts::Part;
 use crate::distance::{Vec3, disc_disc, segment_parameters};
 use crate::pair::PlacedLink;
+use crate::robot::share_along;
 use parry3d_f64::math::{Real, Vector};
 
 /// Trials on the clipping line: bisection of shares of 53 bits. The first trial is the place of the
@@ -123,10 +124,7 @@ impl Domain {
             return (shares, between(shares));
         }
         let [from, to] = self.cut.map(between);
-        let along = to - from;
-        let share = -from.dot(along) / along.length_squared();
-        // Without a length this is NaN; the comparison turns NaN into 0.
-        let shares = self.on_cut(if share > 0.0 { share.min(1.0) } else { 0.0 });
+        let shares = self.on_cut(share_along(-from, to - from));
         (shares, between(shares))
     }
 

@@ -17,9 +17,9 @@
 //!    places by at most (stretch - 1) l and changes d by at most stretch - 1. If the ends are known
 //!    up to e, off grows by e and d changes by at most 2 e / h.
 //! 3. **Two neighbouring parts** i, with `off_i`, `spread_i` and `d_i`. Both interpolations and
-//!    that of their union agree at the outer ends and differ at the middle by some vector m. Between
-//!    they differ by a share of m. So off = max `off_i` + |m|, and
-//!    spread = max(`spread_i` + |d_i - d|).
+//!    that of their union agree at the outer ends and differ at the middle by some vector m.
+//!    Between they differ by a share of m. So off = max `off_i` + |m|, and spread = max(`spread_i`
+//!    + |d_i - d|).
 
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
@@ -164,9 +164,9 @@ impl Part {
     /// [`radius_towards`](Self::radius_towards) and the nearest point of the true cross-section.
     ///
     /// **Proof.** The centre is off by at most `off`. Let w be the unit radius vector,
-    /// perpendicular to d, and t the true direction. |<w, t>| = |<w, t - d>| <= spread. The projection of w to
-    /// the true disc, made a unit vector again, is within sqrt(2) spread of w. If the spread is 1
-    /// or more, the point is the centre.
+    /// perpendicular to d, and t the true direction. |<w, t>| = |<w, t - d>| <= spread. The
+    /// projection of w to the true disc, made a unit vector again, is within sqrt(2) spread of w.
+    /// If the spread is 1 or more, the point is the centre.
     pub(super) fn error_of_radius(&self) -> Real {
         self.off + if self.spread < 1.0 { self.radius * 1.5 * self.spread } else { 0.0 }
     }

@@ -10,8 +10,8 @@ use crate::output::{Enumeration, array_or_number, decision_value, members};
 use crate::queries::chains::set_chain;
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, answer_each, answer_each_or_kind, ask_each};
-use parry_continuum::Chain;
-use parry_continuum::proximity;
+use parry_continuum::proximity::{self, Decision, ProximityError};
+use parry_continuum::{Chain, Tube};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
@@ -41,6 +41,43 @@ struct Session {
 /// True
 #[pyclass(frozen, module = "parry_continuum", weakref)]
 pub(crate) struct SelfQuery(Sessions<Session>);
+
+impl SelfQuery {
+    /// Whether each chain is clear.
+    fn clear<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots,
+        caps: Caps,
+        is_clear: impl Fn(&mut proximity::SelfQuery, &Chain) -> Result<bool, ProximityError> + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
+            let chain = set_chain(&mut session.chain, robot, caps)?;
+            row[0] = is_clear(&mut session.query, chain)?;
+            Ok(())
+        };
+        ask_each(py, &self.0, robots, (false, 1), ask, |_, found| all.extend(found))?;
+        array_or_number(py, robots.shape(&[]), all)
+    }
+
+    /// The decision about each tube.
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots,
+        stated: Stated,
+        decide: impl Fn(&mut proximity::SelfQuery, &Tube) -> Result<Decision, ProximityError> + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
+            row[0] = decision_value(decide(&mut session.query, &tube(robot, stated)?)?);
+            Ok(())
+        };
+        ask_each(py, &self.0, robots, (0, 1), ask, |_, found| all.extend(found))?;
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
+    }
+}
 
 #[pymethods]
 impl SelfQuery {
@@ -153,14 +190,7 @@ impl SelfQuery {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = Robots::new(Names::one("points"), points, radii, None)?;
-        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            let chain = set_chain(&mut session.chain, robot, caps)?;
-            row[0] = session.query.clears(chain, margin)?;
-            Ok(())
-        };
-        ask_each(py, &self.0, &robots, (false, 1), ask, |_, found| all.extend(found))?;
-        array_or_number(py, robots.shape(&[]), all)
+        self.clear(py, &robots, caps, |query, chain| query.clears(chain, margin))
     }
 
     /// Whether a curved tube keeps more than a margin to itself.
@@ -221,20 +251,13 @@ impl SelfQuery {
         let stated = Stated { deviation, turn };
         let robots = Robots::new(Names::one("points"), points, radii, None)?;
         let robots = tubes(robots, "tangents", tangents, stated)?;
-        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            let tube = tube(robot, stated)?;
-            row[0] = decision_value(session.query.clears_tube(&tube, margin, resolution)?);
-            Ok(())
-        };
-        ask_each(py, &self.0, &robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, Enumeration::Decision, robots.shape(&[]), all)
+        self.decide(py, &robots, stated, |query, tube| query.clears_tube(tube, margin, resolution))
     }
 
     /// Bounds on the distance of a robot from itself, between places at least `arc` apart along it.
     ///
-    /// The distance is the least distance of two cross-sections, the discs across the centreline. It
-    /// is never more than `arc`, and exactly `arc` if the robot is straight: choose `arc` larger
+    /// The distance is the least distance of two cross-sections, the discs across the centreline.
+    /// It is never more than `arc`, and exactly `arc` if the robot is straight: choose `arc` larger
     /// than any margin. A round end of the robot has the arc length of the end.
     ///
     /// Parameters
@@ -319,14 +342,7 @@ impl SelfQuery {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = Robots::new(Names::one("points"), points, radii, None)?;
-        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            let chain = set_chain(&mut session.chain, robot, caps)?;
-            row[0] = session.query.clears_beyond(chain, arc, margin)?;
-            Ok(())
-        };
-        ask_each(py, &self.0, &robots, (false, 1), ask, |_, found| all.extend(found))?;
-        array_or_number(py, robots.shape(&[]), all)
+        self.clear(py, &robots, caps, |query, chain| query.clears_beyond(chain, arc, margin))
     }
 
     /// Bounds on the distance of a curved tube from itself, between places at least `arc` apart
@@ -422,15 +438,9 @@ impl SelfQuery {
         let stated = Stated { deviation, turn };
         let robots = Robots::new(Names::one("points"), points, radii, None)?;
         let robots = tubes(robots, "tangents", tangents, stated)?;
-        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            let tube = tube(robot, stated)?;
-            let found = session.query.clears_tube_beyond(&tube, arc, margin, resolution)?;
-            row[0] = decision_value(found);
-            Ok(())
-        };
-        ask_each(py, &self.0, &robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, Enumeration::Decision, robots.shape(&[]), all)
+        self.decide(py, &robots, stated, |query, tube| {
+            query.clears_tube_beyond(tube, arc, margin, resolution)
+        })
     }
 
     /// Whether a moving robot keeps more than a margin to itself, at every time from 0 to 1.
