@@ -30,8 +30,8 @@ pub(crate) enum Widest {
     Avx512,
 }
 
-/// Runs `work` with the token of the widest instruction set that `level` proves to be present, or of
-/// the given [`Widest`] one.
+/// Runs `work` with the token of the widest instruction set that `level` proves to be present, or
+/// of the given [`Widest`] one.
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2")))]
 macro_rules! dispatch {
     ($level:expr, $token:ident => $work:expr) => {
@@ -43,8 +43,8 @@ macro_rules! dispatch {
     }};
 }
 
-/// Runs `work` with the token of the widest instruction set that `level` proves to be present, or of
-/// the given [`Widest`] one.
+/// Runs `work` with the token of the widest instruction set that `level` proves to be present, or
+/// of the given [`Widest`] one.
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
 macro_rules! dispatch {
     ($level:expr, $token:ident => $work:expr) => {

@@ -175,17 +175,17 @@ impl<'a> CarriedMotion<'a> {
         if frame.is_shift() && other.is_shift() {
             let own = stated.point + frame.off;
             let rounding = length(frame.velocity) + length(other.velocity);
-            let apart = length(frame.velocity - other.velocity)
+            let difference = length(frame.velocity - other.velocity)
                 + other.off
                 + 64.0 * Real::UNIT_ROUNDOFF * rounding;
             return CarriedSpeed {
                 own: Speed { point: own * UP, turn: stated.turn * UP },
-                seen: Speed { point: (own + apart) * UP, turn: stated.turn * UP },
+                seen: Speed { point: (own + difference) * UP, turn: stated.turn * UP },
             };
         }
         let piece = &piece();
         // Claim 1: `away` is D0, `own` U, `carried` g.
-        let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
+        let [turning, relative_turn] = [frame.turn, frame.turn - other.turn].map(length);
         let twist = product(2.0 * frame.turn_off, || {
             let away = piece.most(1.0, |point| point - frame.at);
             away + half * (stated.point + frame.off)
@@ -196,16 +196,17 @@ impl<'a> CarriedMotion<'a> {
         } else {
             piece.most(turning, |point| frame.turn.cross(point - frame.at)) + half * turning * own
         };
-        // Claim 2: `between` is v - v', `beside` |w - w'|, `apart` |F - G|.
+        // Claim 2: `between` is v - v', `relative_turn` |w - w'|, `difference` |F - G|.
         let between = frame.velocity - other.velocity;
         let mut rate = other.turn.cross(between).length();
-        if beside > 0.0 {
-            rate += beside * (carried + own);
+        if relative_turn > 0.0 {
+            rate += relative_turn * (carried + own);
         }
-        let mut apart = piece.most(beside, |point| frame.field(point) - other.field(point));
-        apart += half * rate;
+        let mut difference =
+            piece.most(relative_turn, |point| frame.field(point) - other.field(point));
+        difference += half * rate;
         if other.turn == Vector::ZERO {
-            apart = apart.min(length(between) + carried);
+            difference = difference.min(length(between) + carried);
         }
         let other_off = other.off
             + product(other.turn_off, || {
@@ -214,21 +215,21 @@ impl<'a> CarriedMotion<'a> {
                 piece.most(1.0, |point| point - other.at) + moved
             });
         let rounding = frame.rounding(piece.reach) + other.rounding(piece.reach);
-        let apart = apart + other_off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
+        let difference = difference + other_off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
         // Directions.
         let turn = stated.turn + frame.turn_off;
-        let twisted = if beside == 0.0 {
+        let twisted = if relative_turn == 0.0 {
             0.0
         } else {
             let still = if other.turn == Vector::ZERO { 0.0 } else { turning };
-            let change = half * beside * (still + turn);
-            (piece.across(frame.turn - other.turn) + change).min(beside)
+            let change = half * relative_turn * (still + turn);
+            (piece.across(frame.turn - other.turn) + change).min(relative_turn)
         };
         let twisted =
             twisted + other.turn_off + 64.0 * Real::UNIT_ROUNDOFF * (turning + length(other.turn));
         CarriedSpeed {
             own: Speed { point: own * UP, turn: turn * UP },
-            seen: Speed { point: (own + apart) * UP, turn: (turn + twisted) * UP },
+            seen: Speed { point: (own + difference) * UP, turn: (turn + twisted) * UP },
         }
     }
 

@@ -83,9 +83,9 @@ impl CommonFrame {
     /// A pose is not finite or out of range, or its quaternion is not of unit length.
     pub fn between(poses: [Pose; 2], times: [Real; 2]) -> Result<Self, RobotError> {
         let path = RigidPath::new(poses)?;
-        let apart = times[1] - times[0];
+        let duration = times[1] - times[0];
         // Without time nothing moves.
-        let rate = if apart > 0.0 { 1.0 / apart } else { 0.0 };
+        let rate = if duration > 0.0 { 1.0 / duration } else { 0.0 };
         Ok(Self { at: path.pose(0.5).translation, ..Self::of_path(&path, 0.5).sped_up(rate) })
     }
 
@@ -175,21 +175,21 @@ impl CommonFrame {
         }
     }
 
-    /// Returns how the field F moves points during the whole interval, of the length `apart`: the
-    /// rotation, and the centre before and after it.
-    pub(super) fn carries(&self, apart: Real) -> (Rotation, [Vector; 2]) {
-        let half = self.velocity * (0.5 * apart);
-        (rotation_by(self.turn * apart).normalize(), [self.at - half, self.at + half])
+    /// Returns how the field F moves points during the whole interval, of the length `duration`:
+    /// the rotation, and the centre before and after it.
+    pub(super) fn carries(&self, duration: Real) -> (Rotation, [Vector; 2]) {
+        let half = self.velocity * (0.5 * duration);
+        (rotation_by(self.turn * duration).normalize(), [self.at - half, self.at + half])
     }
 
     /// Returns a bound on the speed relative to the field F of a point that is at `point` at first
     /// (claim 1), and on its turn.
-    pub(super) fn stray(&self, point: Vector, apart: Real, stated: Speed) -> Speed {
-        let away = (point - self.at).length() + length(self.velocity) * apart;
+    pub(super) fn stray(&self, point: Vector, duration: Real, stated: Speed) -> Speed {
+        let away = (point - self.at).length() + length(self.velocity) * duration;
         let own = stated.point + self.off;
-        let is_bounded = 2.0 * apart * self.turn_off <= 1.0;
+        let is_bounded = 2.0 * duration * self.turn_off <= 1.0;
         let twist = product(2.0 * self.turn_off, || {
-            if is_bounded { away + apart * own } else { Real::INFINITY }
+            if is_bounded { away + duration * own } else { Real::INFINITY }
         });
         Speed { point: own + twist, turn: stated.turn + self.turn_off }
     }

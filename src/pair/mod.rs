@@ -34,5 +34,5 @@ pub(crate) use measure_batch::{Best, Measurement, measure_each, rounding};
 pub(crate) use pair_lanes::BATCH;
 pub(crate) use placed_link::PlacedLink;
 pub(crate) use placed_robot::PlacedRobot;
-pub(crate) use segment_batch::{Height, measure_points, measure_segments};
+pub(crate) use segment_batch::{PartDistance, measure_points, measure_segments};
 pub(crate) use two_links::NearestOfLinks;

@@ -12,30 +12,30 @@ use parry3d_f64::math::{Real, Vector};
 
 /// The distance of a point or a segment from a link, and its rounding error.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Height {
+pub(crate) struct PartDistance {
     pub distance: Real,
     pub rounding: Real,
     /// The vector to a point from the link's closest point; zero for a segment.
     pub way: Vector,
 }
 
-/// Measures points, and passes the height of each to `take`, in order.
+/// Measures points, and passes the distance of each to `take`, in order.
 pub(crate) fn measure_points(
     level: Level,
     link: &PlacedLink,
     points: impl Iterator<Item = Vector>,
-    take: impl FnMut(Height),
+    take: impl FnMut(PartDistance),
 ) {
     measure(level, link, points.map(|point| [point; 2]), true, take);
 }
 
-/// Measures segments, each given by its two ends, and passes the height of each to `take`, in
+/// Measures segments, each given by its two ends, and passes the distance of each to `take`, in
 /// order.
 pub(crate) fn measure_segments(
     level: Level,
     link: &PlacedLink,
     segments: impl Iterator<Item = [Vector; 2]>,
-    take: impl FnMut(Height),
+    take: impl FnMut(PartDistance),
 ) {
     measure(level, link, segments, false, take);
 }
@@ -45,7 +45,7 @@ fn measure(
     link: &PlacedLink,
     mut segments: impl Iterator<Item = [Vector; 2]>,
     are_points: bool,
-    mut take: impl FnMut(Height),
+    mut take: impl FnMut(PartDistance),
 ) {
     let (mut rows, mut found) = ([[0.0; BATCH]; 9], [[0.0; BATCH]; 5]);
     loop {
@@ -60,7 +60,7 @@ fn measure(
         measure_pack(level, link, &rows, count, are_points, &mut found);
         for lane in 0..count {
             let [distance, extent, x, y, z] = found.map(|row| row[lane]);
-            take(Height { distance, rounding: rounding(extent), way: Vector::new(x, y, z) });
+            take(PartDistance { distance, rounding: rounding(extent), way: Vector::new(x, y, z) });
         }
     }
 }

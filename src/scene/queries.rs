@@ -328,8 +328,8 @@ impl Scene {
     ///
     /// [`clears`](Self::clears), [`clears_tube`](Self::clears_tube) and
     /// [`clears_motion`](Self::clears_motion) test it. Which parts of a robot count is as for
-    /// [`SelfQuery`]: the local minima, or all places by [arc length](Self::set_self_arc). The least
-    /// slack of [`tightest`](Self::tightest) does not include it.
+    /// [`SelfQuery`]: the local minima, or all places by [arc length](Self::set_self_arc). The
+    /// least slack of [`tightest`](Self::tightest) does not include it.
     ///
     /// # Errors
     /// The margin is negative or NaN.
@@ -343,8 +343,8 @@ impl Scene {
     /// places at least `arc` apart along the centreline, as for [`SelfQuery::clears_beyond`]. With
     /// `None`, the default, between local minima, as for [`SelfQuery::clears`].
     ///
-    /// `arc` is a length, larger than the margin: a distance by arc length is at most `arc`. A robot
-    /// shorter than `arc` keeps every margin. [`clears_motion`](Self::clears_motion) and
+    /// `arc` is a length, larger than the margin: a distance by arc length is at most `arc`. A
+    /// robot shorter than `arc` keeps every margin. [`clears_motion`](Self::clears_motion) and
     /// [`time_of_contact`](Self::time_of_contact) have the local minima only.
     ///
     /// ```

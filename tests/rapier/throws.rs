@@ -103,8 +103,8 @@ fn only_sweeps_of_fast_bodies_ignore_the_skin() {
     }
 }
 
-/// A link deep in a wall that nothing pushes out is stopped by six sweeps at most, however slowly it
-/// sinks in. Then it falls on, as parry's capsules do.
+/// A link deep in a wall that nothing pushes out is stopped by six sweeps at most, however slowly
+/// it sinks in. Then it falls on, as parry's capsules do.
 #[test]
 fn sweeps_do_not_hold_a_link_for_long() {
     let dispatcher = WorldDispatcher::default();

@@ -278,12 +278,13 @@ impl GpuSearch {
         self.are_enough(robots, MIN_LINKS[question.kind()])
     }
 
-    /// Whether robots have enough links for the device, by default at least `each` for every core.
-    pub(super) fn are_enough(&self, robots: impl Packed, each: usize) -> bool {
+    /// Whether robots have enough links for the device, by default at least `per_core` for every
+    /// core.
+    pub(super) fn are_enough(&self, robots: impl Packed, per_core: usize) -> bool {
         let min = match self.min_links {
             Some(links) => links,
             None if self.is_cpu_stale && self.mesh.len() >= MANY_TRIANGLES => 0,
-            None => each.saturating_mul(threads()),
+            None => per_core.saturating_mul(threads()),
         };
         let mut links = 0_usize;
         min == 0

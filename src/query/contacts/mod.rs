@@ -1,4 +1,11 @@
 //! All places where a link is near the mesh: the local minima of the distance.
+//!
+//! # Words
+//! - *Part* of a triangle: one of its three corners or three edges ([`PARTS`](crate::mesh::PARTS)).
+//!   In formulas f is a part, or a seam of the mesh.
+//! - *Feature*: the part that holds the nearest point of a triangle, or its face.
+//! - *Pass*: the least distance of an f, beyond which its triangles are one piece of wall.
+//! - *Gap* of an f: how far apart it is in the triangles that share it; 0 for equal corners.
 
 mod contact_collector;
 mod descent_cull;

@@ -80,7 +80,7 @@ use super::local_minima::NONE;
 use super::triangle_candidates::NearLink;
 use crate::answer::Contact;
 use crate::mesh::{Seam, ends_of, find_root, unite};
-use crate::pair::{Height, PlacedLink, measure_points, measure_segments};
+use crate::pair::{PartDistance, PlacedLink, measure_points, measure_segments};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
@@ -162,7 +162,7 @@ struct Flood {
     /// The corners of the reached triangles, one for each position.
     corners: Vec<Corner>,
     /// The distances of the first corners; the others are not measured yet.
-    heights: Vec<Height>,
+    distances: Vec<PartDistance>,
     /// For each vertex of the mesh its index in `corners`.
     of_vertex: Vec<u32>,
     /// Union-find: for each reached triangle an earlier one of the same piece, or itself.
@@ -202,7 +202,7 @@ impl Flood {
         self.of_vertex.resize(mesh.vertices().len(), 0);
         self.reached.clear();
         self.corners.clear();
-        self.heights.clear();
+        self.distances.clear();
         self.joined.clear();
         self.open.clear();
         self.kept.clear();
@@ -309,9 +309,9 @@ impl Flood {
     fn follow_corners(&mut self, level: Level, neighbourhood: LinkNeighbourhood, below: Real) {
         let (vertices, parts) =
             (neighbourhood.near.wall.mesh.vertices(), neighbourhood.near.wall.mesh.parts());
-        let unknown = self.corners[self.heights.len()..].iter();
+        let unknown = self.corners[self.distances.len()..].iter();
         let points = unknown.map(|corner| vertices[corner.vertex as usize]);
-        measure_points(level, neighbourhood.link, points, |height| self.heights.push(height));
+        measure_points(level, neighbourhood.link, points, |measured| self.distances.push(measured));
         let wave = std::mem::take(&mut self.wave);
         for &item in &wave {
             let Reached { triangle, corners } = self.reached[item as usize];
@@ -321,7 +321,7 @@ impl Flood {
                     continue;
                 }
                 let gap = parts.gap(self.corners[corner].vertex);
-                if neighbourhood.is_pass(&self.heights[corner], gap, below) {
+                if neighbourhood.is_pass(&self.distances[corner], gap, below) {
                     self.corners[corner].is_followed = true;
                     self.follow(neighbourhood, triangle, part);
                 } else {
@@ -348,10 +348,10 @@ impl Flood {
         let seams = std::mem::take(&mut self.seams);
         let segments =
             seams.iter().map(|(_, seam)| in_order(seam.ends.map(|end| vertices[end as usize])));
-        let mut of_heights = seams.iter();
-        measure_segments(level, neighbourhood.link, segments, |height| {
-            if let Some(&(own, seam)) = of_heights.next()
-                && neighbourhood.is_pass(&height, seam.gap, below)
+        let mut of_distances = seams.iter();
+        measure_segments(level, neighbourhood.link, segments, |measured| {
+            if let Some(&(own, seam)) = of_distances.next()
+                && neighbourhood.is_pass(&measured, seam.gap, below)
             {
                 self.unite_with(neighbourhood, own, seam.other);
             }
@@ -382,7 +382,7 @@ impl Flood {
                 }
                 let [start, end] = ends_of(points, part);
                 if !neighbourhood.may_pass_between(
-                    ends.map(|end| &self.heights[end]),
+                    ends.map(|end| &self.distances[end]),
                     end - start,
                     below,
                 ) {
@@ -400,11 +400,11 @@ impl Flood {
             let ends = ends_of(mesh.indices()[triangle as usize], part);
             in_order(ends.map(|end| mesh.vertices()[parts.first_at(end) as usize]))
         });
-        let mut of_heights = edges.iter();
-        measure_segments(level, neighbourhood.link, segments, |height| {
-            let Some(&(triangle, part)) = of_heights.next() else { return };
+        let mut of_distances = edges.iter();
+        measure_segments(level, neighbourhood.link, segments, |measured| {
+            let Some(&(triangle, part)) = of_distances.next() else { return };
             let gaps = ends_of(mesh.indices()[triangle as usize], part).map(|end| parts.gap(end));
-            let is_pass = neighbourhood.is_pass(&height, gaps[0].max(gaps[1]), below);
+            let is_pass = neighbourhood.is_pass(&measured, gaps[0].max(gaps[1]), below);
             // Another triangle with this edge may have been followed already.
             if is_pass && self.reaches_other_piece(neighbourhood, triangle, part) {
                 self.follow(neighbourhood, triangle, part);
@@ -529,13 +529,13 @@ impl LinkNeighbourhood<'_> {
     /// Returns true if a corner, edge or seam at this distance is a pass below `below`. `gap` is
     /// the distance by which its triangles may miss it.
     #[inline(always)]
-    fn is_pass(&self, height: &Height, gap: Real, below: Real) -> bool {
-        height.distance < below && height.distance + height.rounding + gap <= self.margin
+    fn is_pass(&self, measured: &PartDistance, gap: Real, below: Real) -> bool {
+        measured.distance < below && measured.distance + measured.rounding + gap <= self.margin
     }
 
     /// Returns true if an edge may be a pass below `below` although neither of its ends is. `along`
     /// leads from one end to the other.
-    fn may_pass_between(&self, ends: [&Height; 2], along: Vector, below: Real) -> bool {
+    fn may_pass_between(&self, ends: [&PartDistance; 2], along: Vector, below: Real) -> bool {
         lower_between(ends, along).is_some_and(|lower| lower < below && lower <= self.margin)
     }
 }
@@ -548,9 +548,9 @@ impl LinkNeighbourhood<'_> {
 /// If the distance does not fall from an end on, that end is nearest. Otherwise it lies above both
 /// tangents `d1 + s g1` and `d2 + (1 - s) g2`, which cross at `s = (d2 + g2 - d1) / (g1 + g2)`.
 ///
-/// **Rounding.** W errs by less than `2 rounding`, so it turns by less than `4 rounding / d`. The two
-/// distances and the bound itself err by less than `4 rounding` together.
-fn lower_between([one, other]: [&Height; 2], along: Vector) -> Option<Real> {
+/// **Rounding.** W errs by less than `2 rounding`, so it turns by less than `4 rounding / d`. The
+/// two distances and the bound itself err by less than `4 rounding` together.
+fn lower_between([one, other]: [&PartDistance; 2], along: Vector) -> Option<Real> {
     let rounding = one.rounding.max(other.rounding);
     let turned = 4.0 * rounding * along.length() / one.distance.min(other.distance);
     let change =

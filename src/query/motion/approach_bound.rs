@@ -130,10 +130,10 @@ impl ApproachBound {
         self.cap_change > MAX_INTERVALS * resolution * self.half_length
     }
 
-    /// Limits `hold` to the time in which a piece comes nearer by at most `room`.
-    pub(super) fn limit_hold(&mut self, piece: &Approach, room: Real) {
+    /// Limits `hold` to the time in which a piece comes nearer by at most `free`.
+    pub(super) fn limit_hold(&mut self, piece: &Approach, free: Real) {
         // The quotient is rounded, and so are times, which are at most 1.
-        let time = room.max(0.0) / piece.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)
+        let time = free.max(0.0) / piece.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)
             - 8.0 * Real::UNIT_ROUNDOFF;
         self.hold = self.hold.min(time.max(0.0));
     }

@@ -16,7 +16,9 @@
 //!    test the piece again.
 //! 3. **Undecided** if the piece is fine and its bounds are at most resolution / 2 apart, beside
 //!    stated uncertainty.
-//! 4. **Halve** otherwise.
+//! 4. **Halve** otherwise. A piece without halves that is fine is an error of the samples if only
+//!    they prevent the decision. It is undecided if none of its ends may become round, or if those
+//!    ends move by at most [`ROUND_END`] of the resolution. Otherwise it is unresolved.
 
 use super::approach_bound::{Approach, ApproachBound, check_subdivision};
 use super::refinement::{BodyQuery, BoundedPiece, RefineAction, RefinePolicy};
@@ -27,6 +29,10 @@ use parry3d_f64::math::Real;
 
 /// The extra turn (rad) beyond the middle shape up to which that shape decides.
 const MIN_EXTRA_TURN: Real = 1.0 / 64.0;
+
+/// The share of the resolution by which an end that may become round moves in an interval that
+/// shows the instant of the change well enough. Any small share would do.
+const ROUND_END: Real = 1.0 / 128.0;
 
 /// The margin to be kept, and the resolution of the answer.
 #[derive(Clone, Copy)]
@@ -107,10 +113,10 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             return Ok(RefineAction::Answered);
         }
         // Step 2.
-        let is_time_to_blame = !self.is_fine(approach)
+        let is_motion_too_large = !self.is_fine(approach)
             && (upper <= self.bound(approach, tube.slack())
                 || bounded.outer.excess() <= 0.25 * approach.distance);
-        if is_time_to_blame {
+        if is_motion_too_large {
             self.record_unresolved(tube, bounded, approach)?;
             return Ok(RefineAction::Settled);
         }
@@ -130,9 +136,10 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         bounded: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError> {
-        let (may_open, resolution) = (tube.may_become_round(bounded.piece), self.wanted.resolution);
+        let (may_become_round, resolution) =
+            (tube.may_become_round(bounded.piece), self.wanted.resolution);
         if self.is_fine(approach)
-            && !may_open
+            && !may_become_round
             && tube.is_entirely_queried(bounded.piece, bounded.found)
         {
             let stated = tube.uncertainty(bounded.piece);
@@ -145,9 +152,9 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             }
         }
         let moved = approach.distance.max(self.approach_bound.cap_change);
-        let is_open_end_decided =
-            moved <= resolution / 128.0 || self.approach_bound.caps_change_too_fast(resolution);
-        if self.is_fine(approach) && (!may_open || is_open_end_decided) {
+        let is_round_end_decided =
+            moved <= ROUND_END * resolution || self.approach_bound.caps_change_too_fast(resolution);
+        if self.is_fine(approach) && (!may_become_round || is_round_end_decided) {
             self.result.undecided = Some(UndecidedReason::Near);
             return Ok(());
         }
@@ -184,8 +191,8 @@ impl<V, F> IntervalTest<V, F> {
         check_subdivision(approach.speed, resolution, fastest)?;
         self.result.is_near |=
             bounded.found.upper() <= margin + resolution + tube.uncertainty(bounded.piece);
-        let room = D::distance(bounded.nearest) - margin - tube.slack();
-        self.approach_bound.limit_hold(approach, room);
+        let free = D::distance(bounded.nearest) - margin - tube.slack();
+        self.approach_bound.limit_hold(approach, free);
         self.moving.record_unresolved(bounded, approach);
         Ok(())
     }

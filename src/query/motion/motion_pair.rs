@@ -12,7 +12,7 @@
 //! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
 //!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
 //!    each other.
-//! 4. **Least clearance**: the rounds of `minimum_rounds`. Pairs beyond `upper + reach` do not
+//! 4. **Least clearance**: the rounds of `minimum_rounds`. Pairs beyond `upper + approach` do not
 //!    matter. If more pairs are nearer than are tested per interval, the interval proves nothing
 //!    and is halved.
 
@@ -77,8 +77,8 @@ impl MarginAnswer<PairUpperBound> {
 
 /// Returns the most pairs of pieces that are tested per interval, the nearest ones. If the motion
 /// exceeds margin and resolution it is 2^16, since a shorter interval has fewer pairs.
-pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
-    if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
+pub(super) fn most_pairs(approach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
+    if approach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
 /// Two motions beside one another.
@@ -138,14 +138,14 @@ impl MotionPair<'_> {
     ) -> Result<TestedInterval<PairUpperBound>, ProximityError> {
         let (motions, names, times) = (self.motions, self.names, interval.times);
         let MotionsMemory { current, beginning, pairs, .. } = &mut *self.memory;
-        let MiddleShapes { mut tubes, motions, speeds, approach_bound, reach } =
+        let MiddleShapes { mut tubes, motions, speeds, approach_bound, approach } =
             MiddleShapes::new(motions, names, current, times)?;
         // A finer resolution is below rounding.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
         let MarginQuery { margin, resolution } = wanted;
         let (scale, upper) =
-            (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
-        let is_all = tubes.begin(scale, upper, most_pairs(reach, wanted), beginning, pairs)?;
+            (margin.max(resolution).max(0.25 * approach), margin + approach + tubes.slack());
+        let is_all = tubes.begin(scale, upper, most_pairs(approach, wanted), beginning, pairs)?;
         if !is_all {
             let (fastest, speed) = speeds.fastest();
             check_subdivision(speed, resolution, || (fastest, speed))?;
@@ -212,16 +212,16 @@ impl Minimized for PairClearance<'_, '_> {
         let MotionPair { memory, motions, names } = &mut *self.pair;
         let MotionsMemory { current, beginning, pairs, .. } = &mut **memory;
         let t = interval.midpoint();
-        let MiddleShapes { mut tubes, motions, speeds, approach_bound, reach } =
+        let MiddleShapes { mut tubes, motions, speeds, approach_bound, approach } =
             MiddleShapes::new(*motions, *names, current, interval.times)?;
         seed(known, &tubes, t);
         let slack = tubes.slack();
         let upper = known.upper();
-        let scale = upper.max(known.tolerance).max(0.25 * reach);
+        let scale = upper.max(known.tolerance).max(0.25 * approach);
         let moving = MovingPair { motions, seen_from: speeds.seen_from, names: *names, left };
         let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
-        let most = if reach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
-        let is_all = tubes.begin(scale, upper + reach + slack, most, beginning, pairs)?;
+        let most = if approach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
+        let is_all = tubes.begin(scale, upper + approach + slack, most, beginning, pairs)?;
         // The pairs that `begin` leaves out.
         policy.settle(upper);
         refine(&mut tubes, pairs, &mut policy)?;
@@ -255,7 +255,7 @@ struct MiddleShapes<'p> {
     speeds: PairSpeeds,
     approach_bound: ApproachBound,
     /// How much nearer the robots come in half of the interval at most.
-    reach: Real,
+    approach: Real,
 }
 
 impl<'p> MiddleShapes<'p> {
@@ -267,10 +267,10 @@ impl<'p> MiddleShapes<'p> {
     ) -> Result<Self, ProximityError> {
         let placed = place_both(motions, names, current, times)?;
         let speeds = PairSpeeds::new(&placed, names)?;
-        let reach = half_length(times) * speeds.sum();
+        let approach = half_length(times) * speeds.sum();
         let PlacedShapes { tubes, cap_change, carried } = placed;
         let approach_bound = ApproachBound::new(times, cap_change);
-        Ok(Self { tubes: TubePair::new(tubes), motions: carried, speeds, approach_bound, reach })
+        Ok(Self { tubes: TubePair::new(tubes), motions: carried, speeds, approach_bound, approach })
     }
 }
 

@@ -42,7 +42,10 @@ pub(super) enum SeenFrom {
 }
 
 impl SeenFrom {
-    /// The speed of a piece of the robot `number`, whose stated speed is `stated`.
+    /// The speed of a piece of the robot `number`, whose stated speed is `stated`: seen from the
+    /// frame at rest, if the robot has a frame; seen from the other robot's frame; or seen from its
+    /// own frame, or from the frame at rest without a frame of its own. The last two are the stated
+    /// speed, more precisely the speed relative to the field F.
     pub(super) fn speed(
         self,
         motions: &[CarriedMotion; 2],

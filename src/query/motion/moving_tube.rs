@@ -43,7 +43,7 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
         tube: &TubeInMesh<'m>,
     ) -> Result<[Real; 2], ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
-        let stretch = SectionRange { section, shares, outer, radius: tube.radius(piece) };
+        let range = SectionRange { section, shares, outer, radius: tube.radius(piece) };
         let MeshSpeed { most, shift, apart } = self.mesh;
         let mut speed = self.motion.stated(section as usize, shares);
         let mut with_shift = Real::INFINITY;
@@ -60,7 +60,7 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
             }
             speed = seen(CommonFrame::REST);
         }
-        let ApproachSpeed { centreline, rim } = ApproachSpeed::of(speed, &stretch)?;
+        let ApproachSpeed { centreline, rim } = ApproachSpeed::of(speed, &range)?;
         let up = 1.0 + 2.0 * Real::UNIT_ROUNDOFF;
         Ok([(centreline + (most - apart)).min(with_shift) * up, (rim + apart) * up])
     }

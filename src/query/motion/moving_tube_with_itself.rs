@@ -38,9 +38,9 @@ impl<'t> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'
     ) -> Result<[Real; 2], ProximityError> {
         *self.left = self.left.saturating_sub(1);
         let mut speeds = [0.0; 2];
-        for (speed, stretch) in speeds.iter_mut().zip(own.section_ranges(pair)) {
-            let stated = self.motion.stated(stretch.section as usize, stretch.shares);
-            let ApproachSpeed { centreline, rim } = ApproachSpeed::of(stated, &stretch)?;
+        for (speed, range) in speeds.iter_mut().zip(own.section_ranges(pair)) {
+            let stated = self.motion.stated(range.section as usize, range.shares);
+            let ApproachSpeed { centreline, rim } = ApproachSpeed::of(stated, &range)?;
             *speed = centreline + rim;
         }
         Ok(speeds)

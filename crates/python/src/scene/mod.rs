@@ -41,9 +41,9 @@ use std::sync::Arc;
 ///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube`
 ///     and `clears_motion` test it.
 /// self_arc : float, optional
-///     With it, `self_margin` is the distance of places at least `self_arc` apart along the robot, as
-///     for `SelfQuery.clears_beyond`. Without it, `self_margin` is the distance of parts that come
-///     near each other, as for `SelfQuery.clears`. Motions need the latter.
+///     With it, `self_margin` is the distance of places at least `self_arc` apart along the robot,
+///     as for `SelfQuery.clears_beyond`. Without it, `self_margin` is the distance of parts that
+///     come near each other, as for `SelfQuery.clears`. Motions need the latter.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
 ///     robots touch, and the scene does not compare them with one another. The numbers are the

@@ -19,11 +19,11 @@ fn is_gathered(number: u32) -> bool {
 }
 
 // D and T of a link: the bound, and the highest wanted triangle.
-fn limit_of(number: u32, lane: u32) -> vec2<u32> {
+fn wanted_of(number: u32, lane: u32) -> vec2<u32> {
     if (QUESTION == WITHIN) {
         return vec2<u32>(query.margin_up, NOTHING);
     }
-    return limits[number * GROUP_SIZE + lane];
+    return wanted[number * GROUP_SIZE + lane];
 }
 
 // Visits the candidates of a link and returns their number. Writes the first `slots` of them to
@@ -92,10 +92,10 @@ fn gather(
         let group = groups[number];
         is_link = lane < group.links;
         if (is_link) {
-            let limit = limit_of(number, lane);
+            let found = wanted_of(number, lane);
             link = robot_link(group, lane);
-            bound = bitcast<f32>(limit.x);
-            highest = limit.y;
+            bound = bitcast<f32>(found.x);
+            highest = found.y;
             own_count = gather_link(link, lane, bound, highest, 0u, 0u);
             own_first = atomicAdd(&group_count, own_count);
             if (own_count > MOST_GATHERED) {

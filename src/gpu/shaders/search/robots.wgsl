@@ -25,7 +25,7 @@ struct LinkGroup {
 @group(0) @binding(7) var<storage, read_write> counters: array<atomic<u32>>;
 // For each link the bound of the first pass, and the highest wanted triangle. The second pass reads
 // them.
-@group(0) @binding(8) var<storage, read_write> limits: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read_write> wanted: array<vec2<u32>>;
 
 fn robot_point(index: u32) -> vec3<f32> {
     return vec3<f32>(robots[index], robots[index + 1u], robots[index + 2u]);

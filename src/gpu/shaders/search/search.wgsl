@@ -198,7 +198,7 @@ fn search(
             atomicStore(&group_overflows, 1u);
         }
         own_first = atomicAdd(&group_count, count);
-        limits[number * GROUP_SIZE + lane] = vec2<u32>(bitcast<u32>(bound()), highest_wanted());
+        wanted[number * GROUP_SIZE + lane] = vec2<u32>(bitcast<u32>(bound()), highest_wanted());
     }
     workgroupBarrier();
     if (lane == 0u && number < query.groups) {
