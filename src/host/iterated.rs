@@ -11,7 +11,7 @@ use crate::distance::Scalar;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
-use parry3d_f64::shape::{Cone, Cylinder, RoundShape, Shape, TypedShape};
+use parry3d_f64::shape::{Shape, ShapeType};
 
 /// The largest coordinate of a scaled pair, up to a factor of two. (Measured with
 /// `tests/host/parrys.rs`: at 1, errors are up to 2e-4 of a link's radius; from 64 to 2^24, up to
@@ -84,7 +84,7 @@ impl<'a> IteratedPair<'a> {
     }
 }
 
-/// Returns the scaled shape. (parry's `scale_dyn` does not scale the border of a round shape.)
+/// Returns the scaled shape.
 fn image(shape: &dyn Shape, scale: Real) -> Option<Box<dyn Shape>> {
     if let Some(link) = shape.as_shape::<ModifiedCylinder>() {
         let (start, end) = (link.start() * scale, link.end() * scale);
@@ -95,36 +95,21 @@ fn image(shape: &dyn Shape, scale: Real) -> Option<Box<dyn Shape>> {
             link.caps(),
         )));
     }
-    let all = Vector::splat(scale);
-    Some(match shape.as_typed_shape() {
-        TypedShape::RoundCuboid(round) => {
-            rounded(round.inner_shape.scaled(all), round.border_radius * scale)
+    let mut image = shape.scale_dyn(Vector::splat(scale), 0)?;
+    // parry does not scale the border of a round shape. This library makes no `dyn Shape` of one:
+    // that would compile parry's iterations again for each kind.
+    let border = match image.shape_type() {
+        ShapeType::RoundCuboid => image.as_round_cuboid_mut().map(|it| &mut it.border_radius),
+        ShapeType::RoundTriangle => image.as_round_triangle_mut().map(|it| &mut it.border_radius),
+        ShapeType::RoundCylinder => image.as_round_cylinder_mut().map(|it| &mut it.border_radius),
+        ShapeType::RoundCone => image.as_round_cone_mut().map(|it| &mut it.border_radius),
+        ShapeType::RoundConvexPolyhedron => {
+            image.as_round_convex_polyhedron_mut().map(|it| &mut it.border_radius)
         }
-        TypedShape::RoundTriangle(round) => {
-            rounded(round.inner_shape.scaled(all), round.border_radius * scale)
-        }
-        TypedShape::RoundCylinder(round) => {
-            let inner = Cylinder::new(
-                round.inner_shape.half_height * scale,
-                round.inner_shape.radius * scale,
-            );
-            rounded(inner, round.border_radius * scale)
-        }
-        TypedShape::RoundCone(round) => {
-            let inner =
-                Cone::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
-            rounded(inner, round.border_radius * scale)
-        }
-        TypedShape::RoundConvexPolyhedron(round) => {
-            rounded(round.inner_shape.clone().scaled(all)?, round.border_radius * scale)
-        }
-        _ => return shape.scale_dyn(all, 0),
-    })
-}
-
-fn rounded<S>(inner_shape: S, border_radius: Real) -> Box<dyn Shape>
-where
-    RoundShape<S>: Shape,
-{
-    Box::new(RoundShape { inner_shape, border_radius })
+        _ => None,
+    };
+    if let Some(border) = border {
+        *border *= scale;
+    }
+    Some(image)
 }

@@ -2,6 +2,7 @@
 
 use super::{one_thread, pool};
 use std::cell::Cell;
+use std::sync::{Mutex, PoisonError};
 
 thread_local! {
     /// Whether this thread works alone, inside [`on_this_thread`].
@@ -31,15 +32,23 @@ pub(crate) fn threads() -> usize {
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     // Waking another thread takes longer than one item.
     let each = if items.len() > 1 && threads() > 1 { pool::each } else { one_thread::each };
-    each(items, &work);
+    // One thread takes each item, once. None works or waits while it holds the lock.
+    let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();
+    each(items.len(), &|place| {
+        let item = items[place].lock().unwrap_or_else(PoisonError::into_inner).take();
+        item.into_iter().for_each(|item| work(place, item));
+    });
 }
 
 /// Runs two closures, on two cores if that is worth it.
 pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    let (mut one, mut other) = (Some(one), Some(other));
+    let run_one = &mut || one.take().into_iter().for_each(|one| one());
+    let run_other = &mut || other.take().into_iter().for_each(|other| other());
     if is_worth_it && threads() > 1 {
-        pool::join(one, other);
+        pool::join(run_one, run_other);
     } else {
-        one_thread::join(one, other);
+        one_thread::join(run_one, run_other);
     }
 }
 
@@ -48,17 +57,17 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     questions: &[Q],
     answers: &mut [A],
     memories: &mut Vec<M>,
-    answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync + Send,
+    answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync,
 ) {
     let threads = threads();
-    if threads == 1 {
-        memories.resize_with(1, M::default);
-        return one_thread::in_chunks(questions.len().max(1), questions, answers, memories, answer);
-    }
     // Four chunks per thread balance the load, because questions differ in their time.
-    let share = questions.len().div_ceil(4 * threads).max(1);
+    let chunks = if threads == 1 { 1 } else { 4 * threads };
+    let share = questions.len().div_ceil(chunks).max(1);
     memories.resize_with(questions.len().div_ceil(share), M::default);
-    pool::in_chunks(share, questions, answers, memories, answer);
+    let shares = questions.chunks(share).zip(answers.chunks_mut(share)).zip(memories);
+    each(&mut shares.collect::<Vec<_>>(), |_, ((questions, answers), memory)| {
+        answer(memory, questions, answers);
+    });
 }
 
 /// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content
@@ -85,7 +94,6 @@ pub(crate) fn with_clones<S: Clone + Send + Sync, Q: Sync, A: Send>(
 mod tests {
     use super::*;
     use std::collections::HashSet;
-    use std::sync::Mutex;
     use std::thread::{self, ThreadId};
     use std::time::Duration;
 

@@ -1,24 +1,16 @@
-//! Work on the threads of a pool. No other file uses one.
+//! Work on the threads of a pool. No other file uses one. Nothing here is generic, so the pool's code
+//! is compiled once.
 
 use rayon::prelude::*;
 
-pub(super) use rayon::{current_num_threads as threads, join};
+pub(super) use rayon::current_num_threads as threads;
 
-/// Calls `work` with the index of every item, and the item.
-pub(super) fn each<T: Send>(items: &mut [T], work: &(dyn Fn(usize, &mut T) + Sync)) {
-    items.par_iter_mut().enumerate().for_each(|(place, item)| work(place, item));
+/// Runs two closures.
+pub(super) fn join(one: &mut (dyn FnMut() + Send), other: &mut (dyn FnMut() + Send)) {
+    rayon::join(one, other);
 }
 
-/// Answers questions in chunks of `share`, each with its own memory.
-pub(super) fn in_chunks<Q: Sync, A: Send, M: Send>(
-    share: usize,
-    questions: &[Q],
-    answers: &mut [A],
-    memories: &mut [M],
-    answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync + Send,
-) {
-    let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
-    shares
-        .zip(memories)
-        .for_each(|((questions, answers), memory)| answer(memory, questions, answers));
+/// Calls `work` with each number below `count`.
+pub(super) fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
 }

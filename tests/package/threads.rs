@@ -15,7 +15,8 @@ const WAITING: [&str; 9] = [
     "Once::",
     "thread::park",
 ];
-const MAY_WAIT: [&str; 3] = ["src/threads/lazy.rs", "src/robot/chain.rs", "src/gpu/opened.rs"];
+const MAY_WAIT: [&str; 4] =
+    ["src/threads/lazy.rs", "src/threads/parallel.rs", "src/robot/chain.rs", "src/gpu/opened.rs"];
 
 /// The only file that gives work to a pool.
 const POOL: &str = "src/threads/pool.rs";
