@@ -106,7 +106,8 @@ int main(int, char** argv) {
     // Motions.
     const Motion rigid = Motion::rigid(robot, Pose(), pose);
     IS_TRUE(clone.clears_motion(rigid, 1, 0.01).decision == Decision::Clear);
-    IS_TRUE(clone.clears_motion(Motion::rigid(tube, pose, Pose()), 1, 0.01).decision == Decision::Clear);
+    const Motion moved_tube = Motion::rigid(tube, pose, Pose());
+    IS_TRUE(clone.clears_motion(moved_tube, 1, 0.01).decision == Decision::Clear);
     const std::vector<double> straight{3, 0, 0}, bent{3, 0.1, 0};
     const Motion bending = Motion::bending(straight, bent, 0.2, pose);
     const Motion back = Motion::bending(bent, straight, 0.2, pose);
@@ -115,7 +116,8 @@ int main(int, char** argv) {
     const auto least = clone.clearance_of_motion(path, 0.01);
     IS_TRUE(least.lower <= 1 && 1 <= least.upper);
     IS_TRUE(clone.clearance_of_motion(Motion::moving_base(path, Pose(), pose), 0.01).resolved);
-    IS_TRUE(clone.clears_motion_batch({&rigid, &path}, 0.5, 0.01).answers[1].decision == Decision::Clear);
+    const auto kept = clone.clears_motion_batch({&rigid, &path}, 0.5, 0.01);
+    IS_TRUE(kept.answers[1].decision == Decision::Clear);
     IS_TRUE(clone.clears_motion_while(floor, rigid, 1, 0.01).decision == Decision::Clear);
     IS_TRUE(clone.clears_path({&robot, &robot}, 0, 1, 0.01).decision == Decision::Clear);
     IS_TRUE(kind_of([&] { Motion::path({}); }) == "no_motions");

@@ -1,10 +1,12 @@
 //! Clips the ears of an outline in the plane.
 //!
 //! # Definitions
-//! - An ear is a corner at which the outline turns left, if no other corner lies in the closed
-//!   triangle of the corner and its neighbours. Corners at the places of these three do not count:
-//!   an outline with holes passes the bridge to a hole twice.
-//! - A blocker of a corner is another corner in its triangle.
+//! - An ear is a corner at which the outline turns left, if it has no blocker.
+//! - A blocker of a corner is another corner in the closed triangle of the corner and its
+//!   neighbours. Corners at the places of these three are none, because an outline with holes passes
+//!   the bridge to a hole twice; but where the outline touches itself, a corner at the place of
+//!   the ear is one if an edge of it leads into the triangle. (At a neighbour's place no edge does,
+//!   unless it ends in the triangle: it would cross the outline.)
 //!
 //! # Algorithm
 //! 1. Test each corner. Clip an ear, and test its two neighbours again. A corner with a blocker is
@@ -115,17 +117,26 @@ impl Ears {
         if turn(a, b, c) <= ROUNDING {
             return Ok(false);
         }
-        let is_inside = |p: Point| {
-            turn(a, b, p) >= 0.0
-                && turn(b, c, p) >= 0.0
-                && turn(c, a, p) >= 0.0
-                && !places.contains(&p)
+        let is_blocker = |ears: &Self, other: u32| {
+            let p = ears.outline[other as usize];
+            if places.contains(&p) {
+                return other != corner && p == b && ears.leads_into(other, places, 0.0);
+            }
+            turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
         };
-        let Some(blocker) = self.find_in(places, is_inside)? else { return Ok(true) };
+        let Some(blocker) = self.find_in(places, is_blocker)? else { return Ok(true) };
         let first = &mut self.blocked[blocker as usize];
         self.waiting.push((corner, *first));
         *first = self.waiting.len() as u32;
         Ok(false)
+    }
+
+    /// Returns whether an edge at a corner at the place of b leads between the edges ab and bc.
+    fn leads_into(&self, corner: u32, [a, b, c]: [Point; 3], rounding: f64) -> bool {
+        self.neighbours[corner as usize].iter().any(|&end| {
+            let end = self.outline[end as usize];
+            turn(a, b, end) > rounding && turn(b, c, end) > rounding
+        })
     }
 
     /// Returns the first corner after `start` whose triangle is not turned over and has no corner
@@ -137,7 +148,11 @@ impl Ears {
             let [a, b, c] = places;
             self.spend(1)?;
             if turn(a, b, c) >= -ROUNDING {
-                let is_inside = |p: Point| {
+                let is_inside = |ears: &Self, other: u32| {
+                    let p = ears.outline[other as usize];
+                    if other != corner && p == b && ears.leads_into(other, places, ROUNDING) {
+                        return true;
+                    }
                     [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| turn(from, to, p) > ROUNDING)
                 };
                 if self.find_in(places, is_inside)?.is_none() {
@@ -171,15 +186,13 @@ impl Ears {
     fn find_in(
         &mut self,
         triangle: [Point; 3],
-        is_inside: impl Fn(Point) -> bool,
+        is_inside: impl Fn(&Self, u32) -> bool,
     ) -> Result<Option<u32>, TooIntricate> {
         let (mut work, mut found) = (1, None);
         for cells in self.grid.rows(triangle) {
             let corners = self.grid.corners(cells);
             work += 1 + corners.len() as u64;
-            let is_it = |&&corner: &&u32| {
-                self.is_left[corner as usize] && is_inside(self.outline[corner as usize])
-            };
+            let is_it = |&&corner: &&u32| self.is_left[corner as usize] && is_inside(self, corner);
             found = corners.iter().find(is_it).copied();
             if found.is_some() {
                 break;

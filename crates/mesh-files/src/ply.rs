@@ -140,8 +140,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
             read_element(element, index, &mut body, &mut mesh, &mut faces)?;
         }
     }
-    // Blank bytes may follow the data.
-    let is_blank = |byte: &u8| byte.is_ascii_control() || is_space(byte);
+    // Blank bytes may follow the data. The count of a face is none of them.
+    let is_blank = |byte: &u8| [0, 0x1a].contains(byte) || is_space(byte);
     match body {
         Body::Text(mut rest) => {
             if let Some(word) = next_word(&mut rest)

@@ -45,12 +45,19 @@ impl Name {
         Self { written: word.to_owned(), own: own.trim_matches('_').to_owned(), unit }
     }
 
-    /// Adds the unit of a second line of the heading.
-    pub fn set_unit(&mut self, word: &str) {
+    /// Adds the unit of a second line of the heading. Returns the name's own unit if that is
+    /// another one.
+    pub fn set_unit(&mut self, word: &str) -> Result<(), &str> {
         let inner = word.trim_matches(['[', ']', '(', ')', ' ']);
-        if !inner.is_empty() {
-            self.unit.get_or_insert_with(|| inner.to_owned());
+        if inner.is_empty() {
+            return Ok(());
         }
+        let unit = self.unit.get_or_insert_with(|| inner.to_owned());
+        if unit == inner || length(unit) == length(inner) { Ok(()) } else { Err(unit) }
+    }
+
+    pub fn has_unit(&self) -> bool {
+        self.unit.is_some()
     }
 
     pub fn has_digit(&self) -> bool {
@@ -70,7 +77,9 @@ pub fn names(words: &[&str]) -> Vec<Name> {
     for word in words {
         let name = Name::new(word);
         match names.last_mut() {
-            Some(last) if name.own.is_empty() && name.unit.is_some() => last.set_unit(word),
+            Some(last) if name.own.is_empty() && name.unit.is_some() && !last.has_unit() => {
+                last.unit = name.unit;
+            }
             _ => names.push(name),
         }
     }
@@ -275,8 +284,33 @@ impl Columns {
 
 /// The names of a column of radii or of diameters, and the factor to radii.
 const RADIUS: [(&[&str], f64); 2] = [
-    (&["radius", "radii", "rad", "r", "outerradius", "tuberadius", "linkradius"], 1.0),
-    (&["diameter", "diameters", "dia", "diam", "od", "outerdiameter", "tubediameter"], 0.5),
+    (
+        &[
+            "radius",
+            "radii",
+            "rad",
+            "r",
+            "outerradius",
+            "radiusout",
+            "rout",
+            "tuberadius",
+            "linkradius",
+        ],
+        1.0,
+    ),
+    (
+        &[
+            "diameter",
+            "diameters",
+            "dia",
+            "diam",
+            "od",
+            "outerdiameter",
+            "diameterout",
+            "tubediameter",
+        ],
+        0.5,
+    ),
 ];
 
 /// The names of a column that numbers the lines of a file.

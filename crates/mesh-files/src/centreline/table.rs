@@ -184,7 +184,7 @@ struct Row {
 /// Returns the points of a file, if it has any.
 fn parse(bytes: &[u8], first: usize) -> Result<Option<Table>, Fault> {
     let mut table: Option<Table> = None;
-    // The heading, the separator of its columns, and the last comment before the points.
+    // The heading, the separator of its columns, and the last comment that names coordinates.
     let (mut named, mut mark): (Option<(Heading, String)>, _) = (None, None);
     let mut comment = None;
     let (mut frame, mut part, mut is_apart) = (None, 0, false);
@@ -199,7 +199,8 @@ fn parse(bytes: &[u8], first: usize) -> Result<Option<Table>, Fault> {
                 frame = frame.or_else(|| noted_frame(text));
                 if table.is_none() {
                     let words = columns(line, text, None)?;
-                    comment = heading(line, &words).or(comment.take());
+                    let named = heading(line, &words).filter(|it| has_coordinates(&it.names));
+                    comment = named.or(comment.take());
                 }
                 return Ok(());
             }
@@ -221,16 +222,21 @@ fn parse(bytes: &[u8], first: usize) -> Result<Option<Table>, Fault> {
                     }
                 }
                 Some((heading, _)) if is_units(&words) => {
-                    let names = heading.names.iter_mut().zip(&words);
-                    names.for_each(|(name, word)| name.set_unit(word));
+                    for (name, word) in heading.names.iter_mut().zip(&words) {
+                        if let Err(own) = name.set_unit(word) {
+                            let (own, word) = (shown(own), shown(word));
+                            return fault(line, format!("has the unit '{word}' below '{own}'"));
+                        }
+                    }
                     return Ok(());
                 }
                 Some(_) => {}
             }
-            // A row may lack the last column, the radius.
+            // A row may lack the last column, the radius. Names with units are no prose.
             let fits = |heading: &Heading| {
                 let count = heading.names.len();
-                (words.len()..=words.len() + 1).contains(&count) && has_coordinates(&heading.names)
+                (words.len()..=words.len() + 1).contains(&count)
+                    || heading.names.iter().any(Name::has_unit)
             };
             let heading = named.as_ref().map(|(heading, _)| heading);
             let columns = match heading.or(comment.as_ref().filter(|comment| fits(comment))) {
@@ -387,23 +393,24 @@ impl Table {
 /// Returns the indices of points that repeat an earlier point after a long step.
 fn steps_back(rows: &[Row]) -> Vec<usize> {
     let mut found = Vec::new();
-    // The last index at each place, and the way to it.
+    // The last one at each place, counted without those that are not defined, and the way to it.
     let mut places = HashMap::new();
     let (mut way, mut before) = (0.0, None);
-    for (index, row) in rows.iter().enumerate().filter(|(_, row)| row.is_defined) {
+    let defined = rows.iter().enumerate().filter(|(_, row)| row.is_defined);
+    for (count, (index, row)) in defined.enumerate() {
         let place = row.point.map(|x| (x + 0.0).to_bits());
         let step = before.map_or(0.0, |before: [f64; 3]| {
             let away = [0, 1, 2].map(|axis| row.point[axis] - before[axis]);
             away.iter().fold(0.0, |length: f64, x| length.hypot(*x))
         });
         if let Some(&(earlier, start)) = places.get(&place)
-            && index > earlier + 1
-            && step * (index - 1 - earlier) as f64 > LONG * (way - start)
+            && count > earlier + 1
+            && step * (count - 1 - earlier) as f64 > LONG * (way - start)
         {
             found.push(index);
         }
         way += step;
-        places.insert(place, (index, way));
+        places.insert(place, (count, way));
         before = Some(row.point);
     }
     found
