@@ -1,7 +1,8 @@
 //! Clips the ears of an outline in the plane.
 //!
 //! # Definitions
-//! - An ear is a corner at which the outline turns left, if it has no blocker.
+//! - An ear is a corner at which the outline turns left, if it has no blocker, or turns back to the
+//!   place from which it came.
 //! - A blocker of a corner is another corner in the closed triangle of the corner and its
 //!   neighbours. Corners at the places of these three are none, because an outline with holes passes
 //!   the bridge to a hole twice; but where the outline touches itself, a corner at the place of
@@ -114,6 +115,10 @@ impl Ears {
     fn is_ear(&mut self, corner: u32) -> Result<bool, TooIntricate> {
         let places = self.places(corner);
         let [a, b, c] = places;
+        // The two edges at the corner are one, and go.
+        if a == c {
+            return Ok(true);
+        }
         if turn(a, b, c) <= ROUNDING {
             return Ok(false);
         }

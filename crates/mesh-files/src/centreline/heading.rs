@@ -77,8 +77,9 @@ pub fn names(words: &[&str]) -> Vec<Name> {
     for word in words {
         let name = Name::new(word);
         match names.last_mut() {
-            Some(last) if name.own.is_empty() && name.unit.is_some() && !last.has_unit() => {
-                last.unit = name.unit;
+            // A second bracket says something else.
+            Some(last) if name.own.is_empty() && name.unit.is_some() => {
+                last.unit = last.unit.take().or(name.unit);
             }
             _ => names.push(name),
         }

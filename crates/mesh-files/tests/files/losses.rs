@@ -78,6 +78,19 @@ fn bytes_and_faces_beside_those_that_a_ply_counts_are_refused() {
     refused("fewer", read("a.ply", binary(300)), "more bytes than its header announces");
     let padded = [&binary(triangles.len())[..], b"\0\0\r\n"].concat();
     assert_eq!(read("a.ply", padded), Ok(whole));
+    // Of few vertices, whose numbers are control characters.
+    let few = |faces| {
+        let mut bytes = ply_header(4, faces, "binary_little_endian", "float").into_bytes();
+        let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        corners.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        for face in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3_i32]] {
+            bytes.push(3);
+            face.iter().for_each(|corner| bytes.extend(corner.to_le_bytes()));
+        }
+        bytes
+    };
+    assert_eq!(read("a.ply", few(4)).unwrap().triangles.len(), 4);
+    refused("few", read("a.ply", few(3)), "it has 13 more bytes than its header announces");
     let text = ply_header(3, 1, "ascii", "float") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let second = "element polygon 1\nproperty list uchar int vertex_indices\nend_header";
     let other = text.replace("end_header", second) + "3 0 2 1\n";

@@ -5,6 +5,7 @@ use crate::mutations::Draws;
 use crate::{Vertex, ply_header, read};
 use mesh_files::Mesh;
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 type Place = [i64; 2];
 
@@ -207,7 +208,55 @@ fn outlines_without_crossings_are_covered_once() {
     assert!(cut > 400 && straight > 100 && twice > 50, "{cut}, {straight}, {twice}");
 }
 
-/// Returns whether two edges of an outline cross, or a corner is on another edge.
+/// Outlines that touch themselves in a corner: petals around one place, from any corner on.
+#[test]
+fn outlines_that_touch_themselves_are_covered_once() {
+    let mut draws = Draws(12);
+    let mut covered = 0;
+    for round in 0..300 {
+        let petals = 2 + draws.below(3);
+        // All around, or within an angle that is convex at the place.
+        let span = [1.0, 0.4][round % 2] * TAU;
+        let mut outline: Vec<Place> = Vec::new();
+        let mut face = Vec::new();
+        let mut vertices: Vec<Place> = vec![[0, 0]];
+        for petal in 0..petals {
+            face.push(0);
+            outline.push([0, 0]);
+            // Corners of a wedge of the plane, counter-clockwise, some of them notches.
+            for corner in 0..2 + draws.below(4) {
+                let angle = (petal as f64 + 0.1 + 0.13 * corner as f64) / petals as f64 * span;
+                let reach = 1000.0 + 4000.0 * draws.below(5) as f64;
+                let place = [angle.cos(), angle.sin()].map(|x| (reach * x) as i64);
+                face.push(vertices.len());
+                vertices.push(place);
+                outline.push(place);
+            }
+        }
+        let area = twice_area(&outline);
+        let name = format!("{round}: {outline:?}");
+        for start in 0..face.len() {
+            face.rotate_left(1);
+            let corners: Vec<Vertex> =
+                vertices.iter().map(|&[x, y]| [x as f64, y as f64, 0.0]).collect();
+            let mesh = read("a.obj", obj(&corners, &face)).unwrap();
+            let turns: Vec<_> = mesh
+                .triangles
+                .iter()
+                .map(|triangle| {
+                    let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+                    turn(a, b, c)
+                })
+                .collect();
+            assert!(turns.iter().all(|&turn| turn >= 0), "{start} of {name}");
+            assert_eq!(turns.iter().sum::<i64>(), area, "{start} of {name}");
+            covered += 1;
+        }
+    }
+    assert!(covered > 1000, "{covered}");
+}
+
+/// Returns whether two edges of an outline cross.
 fn crosses(outline: &[Place]) -> bool {
     let count = outline.len();
     let edge = |i: usize| [outline[i], outline[(i + 1) % count]];

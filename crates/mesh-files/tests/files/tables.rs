@@ -104,6 +104,17 @@ fn the_units_of_headings_are_used_or_refused() {
     assert_eq!(read("# x_m,y_m,z_m\n0,0,0\n0,0,0.5\n").unwrap().points[1][2], 500.0);
     assert_eq!(read("# x_m y_m z_m r_mm\n0 0 0 2\n0 0 0.5\n").unwrap().radii, Some(vec![2.0]));
     assert_eq!(read("# axes x, y, z of the scanner\n0,0,0\n0,0,0.5\n").unwrap().points[1][2], 0.5);
+    // A remark below the heading.
+    let remark = "# x [mm],y [mm],z [mm],diameter [cm]\n# catheter\n0,0,0,0.2\n0,0,5,0.2\n";
+    assert_eq!(read(remark).unwrap().radii, Some(vec![1.0]));
+    refused("fewer", read("# x_cm,y_cm,z_cm\n0,0,0,2\n0,0,5,2\n"), "");
+    // Two units of one column.
+    for units in ["mm,mm,mm", "cm,cm,mm"] {
+        let text = format!("x_cm,y_cm,z_cm\n{units}\n0,0,0\n0,0,4\n");
+        refused(units, read(&text), "has the unit 'mm' below 'cm'");
+    }
+    let twice = read("x_cm,y_cm,z_cm\ncm,[cm],(cm)\n0,0,0\n0,0,4\n");
+    assert_eq!(twice.unwrap().points[1][2], 40.0);
 }
 
 #[test]
@@ -278,6 +289,9 @@ fn two_columns_of_radii_are_refused() {
         ("x,y,z,radius,diameter", "radius", "diameter"),
         ("x,y,z,diameter (mm),r", "r", "diameter (mm)"),
         ("OD,x,y,z,outer diameter", "OD", "outer diameter"),
+        // Inner and outer, no inches.
+        ("x,y,z,radius_in,radius_out", "radius_in", "radius_out"),
+        ("r_in,x,y,z,r_out", "r_in", "r_out"),
     ] {
         let text = format!("{heading}\n0,0,0,1,2\n0,0,1,1,2\n");
         let expected = format!("has '{first}' and '{second}', and both may be the radius");
