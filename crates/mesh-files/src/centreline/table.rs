@@ -39,8 +39,7 @@ impl Fault {
 
 /// Returns the numbers of each line of a text file.
 ///
-/// Empty lines are skipped, and lines that begin with # unless they are the heading or state the
-/// frame. Columns are separated by
+/// Empty lines, lines that begin with # and a heading are skipped. Columns are separated by
 /// semicolons, tabs, commas or spaces, and may be quoted.
 ///
 /// `expected` names the columns to write, for the error message.
