@@ -31,10 +31,12 @@ pub(crate) fn threads() -> usize {
 /// Calls `work` with the index of every item, and the item. An item should take some microseconds.
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     // Waking another thread takes longer than one item.
-    let each = if items.len() > 1 && threads() > 1 { pool::each } else { one_thread::each };
+    if items.len() < 2 || threads() == 1 {
+        return items.iter_mut().enumerate().for_each(|(place, item)| work(place, item));
+    }
     // One thread takes each item, once. None works or waits while it holds the lock.
     let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();
-    each(items.len(), &|place| {
+    pool::each(items.len(), &|place| {
         let item = items[place].lock().unwrap_or_else(PoisonError::into_inner).take();
         item.into_iter().for_each(|item| work(place, item));
     });
@@ -60,9 +62,12 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync,
 ) {
     let threads = threads();
+    if threads == 1 {
+        memories.resize_with(1, M::default);
+        return answer(&mut memories[0], questions, answers);
+    }
     // Four chunks per thread balance the load, because questions differ in their time.
-    let chunks = if threads == 1 { 1 } else { 4 * threads };
-    let share = questions.len().div_ceil(chunks).max(1);
+    let share = questions.len().div_ceil(4 * threads).max(1);
     memories.resize_with(questions.len().div_ceil(share), M::default);
     let shares = questions.chunks(share).zip(answers.chunks_mut(share)).zip(memories);
     each(&mut shares.collect::<Vec<_>>(), |_, ((questions, answers), memory)| {
