@@ -11,7 +11,9 @@ pub(super) fn join(one: &mut dyn FnMut(), other: &mut dyn FnMut()) {
     other();
 }
 
-/// Calls `work` with each number below `count`.
+/// Calls `work` with each number below `count`. With a pool, a single thread works on the items
+/// themselves.
+#[cfg(not(feature = "parallel"))]
 pub(super) fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }

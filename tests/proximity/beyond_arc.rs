@@ -432,3 +432,86 @@ fn a_scene_keeps_a_margin_by_arc_length() {
         assert!(error.to_string().contains("arc"), "{error}");
     }
 }
+
+/// The bounds of a fit hold for every curve within its deviation, whatever its direction.
+#[test]
+fn bounds_of_fits_enclose_curves_within_their_deviation() {
+    for (unit, radius) in [(1e-6, 2.0), (1.0, 2.0), (1e3, 0.5)] {
+        let points: Vec<_> = (0..=200).map(|k| Vector::Z * (0.2 * f64::from(k) * unit)).collect();
+        let deviation = 0.1 * unit;
+        let fit = Tube::fit(&points, &[radius * unit; 200], deviation).unwrap();
+        // A sine of the amplitude 0.1. At z = 10 and 30 its discs lean towards one another.
+        let arc = 20.0 * unit;
+        let (turn, mut own) = (2.0 * PI * 4.5 / 20.0, SelfQuery::new());
+        let disc = |z: f64| Disc {
+            arc: z * unit,
+            centre: Vector::new(0.1 * (turn * (z - 10.0)).sin(), 0.0, z) * unit,
+            direction: Vector::new(0.1 * turn * (turn * (z - 10.0)).cos(), 0.0, 1.0).normalize(),
+            radius: radius * unit,
+        };
+        let member = apart(&disc(10.0), &disc(30.0));
+        assert!(member < 19.9 * unit, "the discs lean: {member}");
+        let found = own.clearance_beyond(&fit, arc, 0.01 * unit).unwrap().unwrap();
+        assert!(found.lower <= member && found.resolved, "{found:?}");
+        let straight = 20.0 * unit;
+        assert!(found.upper >= straight * (1.0 - 1e-12), "{found:?}");
+        let decided = own.clears_tube_beyond(&fit, arc, member, 1e-3 * unit).unwrap();
+        assert_eq!(decided, Decision::Undecided);
+    }
+}
+
+/// A stated turn counts within two radii of a flat face alone.
+#[test]
+fn a_stated_turn_counts_near_flat_faces() {
+    let points: Vec<_> = (0..=60).map(|k| Vector::Z * f64::from(k)).collect();
+    let exact = Tube::from_samples(&points, &[2.0; 60], None).unwrap();
+    let turned = exact.clone().with_turn(0.1).unwrap();
+    let mut own = SelfQuery::new();
+    let [plain, found] =
+        [&exact, &turned].map(|tube| own.clearance_beyond(tube, 20.0, 0.01).unwrap().unwrap());
+    assert!(plain.resolved && plain.lower > 19.9, "{plain:?}");
+    // Two discs that lean by the turn, or one at a face and one that is exact.
+    assert!(found.resolved && found.lower <= 20.0 - 2.0 * 0.0998, "{found:?}");
+    assert!(found.lower > 19.0 && found.uncertainty >= 0.2, "{found:?}");
+}
+
+/// A margin may be infinite: a robot that has no two such places keeps it.
+#[test]
+fn an_infinite_margin_is_kept_by_a_robot_that_is_shorter_than_the_arc() {
+    let mut own = SelfQuery::new();
+    for unit in [1e-9, 1.0] {
+        let points = [Vector::ZERO, Vector::Z * unit];
+        let chain = Chain::capsules(&points, &[0.1 * unit]).unwrap();
+        let tube = Tube::from(&chain);
+        for (arc, is_kept) in [(2.0 * unit, true), (0.5 * unit, false)] {
+            for margin in [1e300, f64::INFINITY] {
+                assert_eq!(own.clears_beyond(&chain, arc, margin), Ok(is_kept));
+                let decided = own.clears_tube_beyond(&tube, arc, margin, 1e-3 * unit).unwrap();
+                assert_eq!(decided == Decision::Clear, is_kept, "{margin}");
+                assert_eq!(decided == Decision::Contact, !is_kept, "{margin}");
+            }
+        }
+    }
+}
+
+/// Many links that are bent unevenly: the union of parts is as far from its chord as both of them
+/// and their joint together.
+#[test]
+fn parts_of_uneven_bends_are_within_their_bounds() {
+    let points = [
+        (0.0, 0.0),
+        (0.0, 10.0),
+        (10.0, 10.0),
+        (20.0, 10.0),
+        (30.0, 10.0),
+        (22.25, 10.25),
+        (14.5, 10.5),
+        (6.75, 10.75),
+        (-1.0, 11.0),
+    ];
+    let points = points.map(|(x, z)| Vector::new(x, 0.0, z));
+    let robot = Chain::capsules(&points, &[0.001; 8]).unwrap();
+    let nearest = sampled(&discs(&robot, 200, 0.1), 59.0);
+    let found = minimum(&robot, 59.0).unwrap();
+    assert!(found.lower <= nearest && nearest < 1.0 && nearest < found.upper + 0.1, "{found:?}");
+}

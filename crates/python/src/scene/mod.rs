@@ -360,8 +360,8 @@ impl Scene {
         });
         let structures = structures.collect::<PyResult<Vec<_>>>()?;
         let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
-        let arguments =
-            (self.robot_margin, nested, structures, self.self_margin, self.self_arc).into_pyobject(py)?;
+        let arguments = (self.robot_margin, nested, structures, self.self_margin, self.self_arc)
+            .into_pyobject(py)?;
         Ok((make, arguments.into_any()))
     }
 

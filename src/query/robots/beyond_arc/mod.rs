@@ -24,14 +24,15 @@
 //! 1. Build a tree of parts ([`Parts`]) with bounds on their discs.
 //! 2. Measure some places that are `arc` apart: the first upper bound.
 //! 3. Take the pair of parts with the least lower bound ([`measure`]). Stop if it reaches the least
-//!    upper bound.
+//!    upper bound within the tolerance and what the tube leaves uncertain, if a margin is decided,
+//!    or after `MOST_PAIRS` pairs of pieces.
 //! 4. Divide both parts, or one if the other is a leaf. Two straight links are measured exactly
 //!    instead ([`polish`]).
 //!
 //! # Correctness
-//! Each pair of places belongs to a pair in the queue or to one whose lower bound was at least the
-//! least upper bound. So the smaller of that upper bound and the least lower bound of the queue is
-//! a lower bound on the distance.
+//! Each pair of places belongs to a pair in the queue or to one that is settled: its lower bound was
+//! good enough, or it cannot be divided. So the least of the upper bound and of the lower bounds of
+//! the queue and of settled pairs is a lower bound on the distance.
 //!
 //! **Rounding.** `arc` is reduced by `arc_slack`, which admits all pairs of places. `slack` covers
 //! all other rounding and the change of the distance by `arc_slack`.
@@ -150,6 +151,8 @@ struct BeyondArc<'a> {
     upper: Real,
     /// The least lower bound of the pairs that need not or cannot be divided.
     settled: Real,
+    /// By how much the bounds may differ because the tube states errors.
+    uncertainty: Real,
     best: Option<([u32; 2], NearPlaces)>,
 }
 
@@ -167,6 +170,7 @@ impl<'a> BeyondArc<'a> {
             tolerance: tolerance * parts.scale,
             upper: Real::INFINITY,
             settled: Real::INFINITY,
+            uncertainty: 0.0,
             best: None,
             parts,
             pairs,
@@ -182,7 +186,8 @@ impl<'a> BeyondArc<'a> {
     fn decide(mut self, margin: Real) -> Result<Decision, ProximityError> {
         let margin = margin * self.parts.scale;
         let lower = self.run(Some(margin))?;
-        Ok(if lower - self.parts.slack > margin {
+        // A margin may be infinite; that of a robot without two such places is kept.
+        Ok(if self.best.is_none() || lower - self.parts.slack > margin {
             Decision::Clear
         } else if self.upper_bound() <= margin {
             Decision::Contact
@@ -203,13 +208,16 @@ impl<'a> BeyondArc<'a> {
             return Ok(Real::INFINITY);
         }
         self.offer([self.parts.root(); 2], 0.0);
-        let (slack, uncertainty) = (self.parts.slack, self.uncertainty() * self.parts.scale);
+        let slack = self.parts.slack;
+        self.uncertainty = self.uncertainty_of([self.parts.root(); 2]);
         let mut examined = 0;
         while let Some(pair) = self.pairs.pop() {
             let lower = self.settled.min(pair.lower).min(self.upper);
             let is_decided =
                 margin.is_some_and(|margin| lower - slack > margin || self.upper_bound() <= margin);
-            let is_near = pair.lower + self.tolerance + uncertainty + 2.0 * slack >= self.upper;
+            self.uncertainty = self.uncertainty_of(pair.parts);
+            let reached = pair.lower + self.tolerance + self.uncertainty;
+            let is_near = reached + 2.0 * slack >= self.upper;
             if is_decided || is_near || examined == MOST_PAIRS {
                 return Ok(lower);
             }
@@ -221,9 +229,13 @@ impl<'a> BeyondArc<'a> {
         Ok(self.upper.min(self.settled))
     }
 
-    /// Returns by how much the bounds differ because the tube states errors.
-    fn uncertainty(&self) -> Real {
-        self.tube.as_ref().map_or(0.0, |tube| 2.0 * tube.position_uncertainty())
+    /// Returns by how much the bounds may differ because the tube states errors: those of the
+    /// places, and the doubts about directions of these parts or of the best ones.
+    fn uncertainty_of(&self, parts: [u32; 2]) -> Real {
+        let Some(tube) = &self.tube else { return 0.0 };
+        let doubt = |parts: [u32; 2]| parts.iter().map(|&part| self.parts.part(part).doubt).sum();
+        let of_best: Real = self.best.map_or(0.0, |(parts, _)| doubt(parts));
+        2.0 * tube.position_uncertainty() * self.parts.scale + of_best.max(doubt(parts))
     }
 
     /// Measures the first upper bounds: the places `arc` beyond the start of each leaf.
@@ -333,7 +345,7 @@ impl<'a> BeyondArc<'a> {
         let parts = numbers.map(|part| self.parts.part(part));
         let lower = (lower.min(places.distance) - slack).max(0.0) / scale;
         let upper = if places.distance > 0.0 { (places.distance + slack) / scale } else { 0.0 };
-        let uncertainty = self.uncertainty();
+        let uncertainty = self.uncertainty / scale;
         let tolerance = (self.tolerance + 4.0 * slack) / scale;
         RobotClearance {
             lower,

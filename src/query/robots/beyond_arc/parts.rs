@@ -15,7 +15,8 @@
 //!    Tangents of the part differ from their mean by at most k l / 2. The samples' arc lengths are
 //!    those of their polyline: the curve is longer by at most the factor `stretch`, which moves
 //!    places by at most (stretch - 1) l and changes d by at most stretch - 1. If the ends are known
-//!    up to e, off grows by e and d changes by at most 2 e / h.
+//!    up to e, off grows by e and d changes by at most 2 e / h. A stated turn counts near flat
+//!    faces, where it is stated. Of a fit all directions are unknown: spread excludes none.
 //! 3. **Two neighbouring parts** i, with `off_i`, `spread_i` and `d_i`. Both interpolations and
 //!    that of their union agree at the outer ends and differ at the middle by some vector m.
 //!    Between they differ by a share of m. So off = max `off_i` + |m|, and spread = max(`spread_i`
@@ -40,6 +41,8 @@ pub(super) struct Part {
     pub radius: Real,
     pub off: Real,
     pub spread: Real,
+    /// How far apart the bounds of a cross-section stay because its direction is uncertain.
+    pub doubt: Real,
     /// The outward directions of caps. Only leaves have caps; the spread of all others includes
     /// them.
     pub caps: [Option<Vector>; 2],
@@ -59,6 +62,7 @@ impl Part {
             radius,
             off: 0.0,
             spread: if length > 0.0 { 0.0 } else { ANY },
+            doubt: 0.0,
             caps: [None; 2],
             piece: Piece { section: 0, from: 0, to: 0 },
             children: None,
@@ -80,6 +84,7 @@ impl Part {
         let between = union.ends[0] + union.direction * (one.arcs[1] - one.arcs[0]);
         let middles = [one.ends[1], two.ends[0]].map(|middle| (middle - between).length());
         union.off = one.off.max(two.off) + middles[0].max(middles[1]);
+        union.doubt = one.doubt.max(two.doubt);
         union.children = Some(children);
         union
     }
@@ -294,12 +299,17 @@ impl Parts {
             + longer * length
             + known
             + tube.error() * self.scale;
-        part.spread = if tube.is_loose() || part.length() == 0.0 {
-            ANY
-        } else {
-            let uncertain = tube.turn().unwrap_or(0.0) + 2.0 * known / part.length();
-            0.5 * bend + longer + uncertain
-        };
+        let mut faces = section.faces.iter().flatten();
+        if tube.is_loose() || faces.any(|face| face.tilt == Real::INFINITY) {
+            (part.spread, part.doubt) = (ANY, part.radius);
+        } else if part.length() > 0.0 {
+            let away = [arcs[0] - section.start, section.end - arcs[1]];
+            let near = 2.0 * (section.radius + tube.error());
+            let is_near = |end: usize| section.faces[end].is_some() && away[end] <= near;
+            let turn = tube.turn().filter(|_| (0..2).any(is_near)).unwrap_or(0.0);
+            part.spread = 0.5 * bend + longer + turn + 2.0 * known / part.length();
+            part.doubt = part.radius * if turn < 1.0 { 2.5 * turn } else { 1.0 };
+        }
         Ok(part)
     }
 
