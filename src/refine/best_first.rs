@@ -7,8 +7,8 @@
 //!   of a face causes ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that the piece yields.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
-//!   its parent. A **distant** piece was searched within its `lower`, without a result: its
-//!   distance is strictly larger.
+//!   its parent. A **distant** piece was searched without a result, and `lower` is the bound of
+//!   that search: its distance is strictly larger.
 //! - The **rank** of a measured piece: (`lower` + `direction_gap`, upper bound of `found`, place
 //!   along the tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`,
 //!   infinity, place).

@@ -266,10 +266,12 @@ mod tests {
     use continuum_testing::Random;
 
     /// All pairs of capsules within the bound are visited, and few others: on lines, coils and
-    /// random walks, of links and balls, far from the origin, at every scale.
+    /// random walks, of links and balls, far from the origin, at every scale. A list may follow its
+    /// tube from the tip to the base, and its bodies point to the tip, as those of a query may.
     #[test]
     fn all_near_pairs_are_visited() {
         let mut random = Random::new(31);
+        let (mut count, mut far) = (0, 0);
         for round in 0..300 {
             let scale = [1.0, 1e-150, 1e150][round % 3];
             let offset = random.point() * [0.0, 1e6][random.below(2) as usize];
@@ -289,7 +291,11 @@ mod tests {
                     let radius = random.between(0.0, 0.5) * scale;
                     PlacedLink::between(start * scale, at * scale, radius, [false; 2])
                 };
-                (0..count).map(next).collect::<Vec<_>>()
+                let mut list: Vec<_> = (0..count).map(next).collect();
+                if random.below(2) == 0 {
+                    list.reverse();
+                }
+                list
             });
             let mut trees = [CapsuleTree::default(), CapsuleTree::default()];
             let of_one = |k: usize, run: Range<usize>| {
@@ -312,9 +318,12 @@ mod tests {
             let mut visited: Vec<_> = std::iter::from_fn(next).map(|(_, pair)| pair).collect();
             visited.sort_unstable();
             let wanted: Vec<_> = all.filter(|pair| apart(*pair) <= bound).collect();
+            count += lists[0].len() * lists[1].len() - wanted.len();
+            far += visited.len() - wanted.len();
             for pair in &wanted {
                 assert!(visited.binary_search(pair).is_ok(), "round {round}: {pair:?}");
             }
         }
+        assert!(0 < far && 20 * far < count, "{far} of {count}");
     }
 }

@@ -148,7 +148,7 @@ impl TubeInMesh<'_> {
         self.tube.begin(scale.max(0.25 * self.tube.widest()), pieces);
     }
 
-    /// Fills `pieces` with initial pieces that turn by at most 1 rad.
+    /// Fills `pieces` with initial pieces that turn by about 1 rad on average, or less.
     pub(crate) fn begin_coarse(&self, pieces: &mut Vec<Piece>) {
         self.tube.begin(Real::INFINITY, pieces);
     }

@@ -113,9 +113,14 @@ impl DistanceCache {
         left.next_down() - self.rounding(size)
     }
 
+    /// Whether every place in the frame of a structure of this `size` is certainly in range.
+    pub fn is_in_range(&self, size: Real) -> bool {
+        self.odometer.extent() + size < COORDINATE_LIMIT / 16.0
+    }
+
     fn rounding(&self, size: Real) -> Real {
-        let largest = self.odometer.extent() + size;
-        if largest < COORDINATE_LIMIT / 16.0 {
+        if self.is_in_range(size) {
+            let largest = self.odometer.extent() + size;
             self.odometer.error_from_ends(2048.0 * Real::UNIT_ROUNDOFF * largest)
         } else {
             Real::INFINITY

@@ -17,7 +17,9 @@
 //!    disc or a ball around that point.
 //! 2. The body contains the ball around each point of its piece of the centreline. Along a chord
 //!    the centreline is within `radius of the body - radius` of the axis (case 1 of
-//!    `refine::bounding_body`); cases 2 and 3 make the axis longer and the body wider.
+//!    `refine::bounding_body`). Case 2 makes the axis longer and the body wider. In case 3 the axis
+//!    is the normal of the face: a point at the arc length s from it is between 0 and s behind the
+//!    face, and at most k s^2 / 2 + a s beside the normal, which the radius of the body includes.
 //! 3. Until another time of the part a point of the centreline moves by at most w. So the ball
 //!    around it comes nearer by at most w, flat ends that become round included.
 //! 4. If the structure moves, the box is that of the middle of the part, and the way of its points

@@ -13,7 +13,7 @@
 //! 1. **Begin** ([`Scene::begin`]). Place all robots, which finds their errors. Stop if every robot
 //!    is beyond `bound` of the bounds of all structures. Advance the odometer of each robot.
 //! 2. **Seed.** Query the pair (k, i) that decided the last query: it violated a margin, or was
-//!    tightest.
+//!    tightest. Leave this out if a robot could be out of range in the frame of a structure.
 //! 3. **Gather** ([`Scene::gather`]). Skip the pairs with `lower > bound` or `box > bound`. Sort
 //!    the others: least `box - m(k, i)` first, or by number for contacts.
 //! 4. **Query** the pairs in order. [`Scene::place_unless_clear`] skips a pair that is beyond
@@ -29,7 +29,9 @@
 //! **Claim.** Warm starts never change an answer. `tightest` returns the least (slack, structure,
 //! robot), pairs of robots last.
 //! **Proof.** Steps 1, 3 and 4 skip a pair only if d(k, i) > `bound`. So `tightest` searches every
-//! pair at the final slack, ties included, and `offer` orders ties by number.
+//! pair at the final slack, ties included, and `offer` orders ties by number. If a robot could be
+//! out of range, there is no seed and `lower` is -infinity: step 3 places all pairs and finds the
+//! first error.
 //! **Rounding.** Slacks are compared exactly ([`DoubleDouble`]). [`beyond`] and the key of step 3
 //! are rounded outward, and the best slack is rounded up before it stops step 4. So rounding can
 //! only search a pair too many.
@@ -385,8 +387,8 @@ impl Scene {
 
     /// Returns whether all robots keep all margins.
     ///
-    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is no
-    /// robot; and if all robots keep the [margin to themselves](Self::set_self_margin), if it is
+    /// True exactly if [`tightest`](Self::tightest) finds no pair, or one with a slack of more than
+    /// 0; and if all robots keep the [margin to themselves](Self::set_self_margin), if it is
     /// set. The query ends at the first violated margin.
     ///
     /// # Errors
@@ -435,7 +437,7 @@ impl Scene {
     }
 
     fn clears_structures(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
-        if let Some([structure, robot]) = self.met.filter(|met| self.have(*met, robots))
+        if let Some([structure, robot]) = self.seed(self.met, robots)
             && !self.clears_one(structure, robot, robots)?
         {
             return Ok(false);
@@ -499,7 +501,7 @@ impl Scene {
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
         self.begin(robots, Some(Real::INFINITY))?;
         let mut best: Best = None;
-        if let Some([structure, robot]) = self.tightest.filter(|last| self.have(*last, robots)) {
+        if let Some([structure, robot]) = self.seed(self.tightest, robots) {
             self.offer(structure, robot, robots, &mut best)?;
         }
         // Step 3. The pair with the least lower bound is first, because its slack excludes the most
@@ -549,8 +551,8 @@ impl Scene {
     /// Finds the closest robot of each structure, in order, with or without a margin.
     ///
     /// If the robots have different margins from the structure, the one with the least slack is
-    /// found. Robots that may touch the structure then come last. `out` is cleared first, and stays
-    /// empty if no robot is given.
+    /// found. Robots without a margin are then ignored. `out` is cleared first, and stays empty if
+    /// no robot is given.
     ///
     /// # Errors
     /// As [`tightest`](Self::tightest).
@@ -693,8 +695,14 @@ impl Scene {
         order
     }
 
-    fn have(&self, [structure, robot]: [usize; 2], robots: &[(&Chain, Pose)]) -> bool {
-        structure < self.structures.len() && robot < robots.len()
+    /// Step 2: the pair of the last query, if this query has it and no placement can fail.
+    fn seed(&self, last: Option<[usize; 2]>, robots: &[(&Chain, Pose)]) -> Option<[usize; 2]> {
+        let size = self.all?.size;
+        let mut watches = self.watches.iter().take(robots.len());
+        last.filter(|[structure, robot]| {
+            *structure < self.structures.len() && *robot < robots.len()
+        })
+        .filter(|_| watches.all(|watch| watch.is_in_range(size)))
     }
 
     /// Drops the cached distances from a structure, which were measured at its old place.

@@ -14,7 +14,7 @@ pub(super) struct SceneBounds {
     /// The bounding box, in the scene's frame.
     around: BoundingBox,
     /// The largest coordinate of the meshes and poses.
-    size: Real,
+    pub size: Real,
     /// The largest margin, or -infinity.
     pub margin: Real,
 }

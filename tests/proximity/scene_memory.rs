@@ -247,3 +247,31 @@ fn so_it_does_far_out_and_where_all_is_tiny() {
     check(500, &Place { origin: Vector::new(1e6, -2e6, 5e5), unit: 1.0 });
     check(500, &Place { origin: Vector::ZERO, unit: 1e-12 });
 }
+
+/// A structure out of range is the same error, whatever an earlier query has met.
+#[test]
+fn a_structure_out_of_range_is_an_error_after_any_query() {
+    let (vertices, triangles) = Ball::new(1.0).to_trimesh(12, 6);
+    let robot = Chain::capsules(&[Vector::ZERO, Vector::Z * 2.0], &[0.2]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let far = Pose::translation(1e151, 0.0, 0.0);
+    // Which structure the robot touches, which ones are moved away, and which one is named.
+    for (touched, moved, named) in [(0, &[1][..], "b"), (1, &[0], "a"), (1, &[0, 1], "a")] {
+        let mut scene = Scene::new();
+        for (number, name) in ["a", "b"].into_iter().enumerate() {
+            let search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+            scene.add(name, search, Some(0.1)).unwrap();
+            let x = if number == touched { 0.0 } else { 50.0 };
+            scene.set_pose(number, &Pose::translation(x, 0.0, 0.0)).unwrap();
+        }
+        assert_eq!(scene.clears(&robots), Ok(false));
+        assert!(scene.tightest(&robots).unwrap().is_some_and(|tightest| tightest.slack < 0.0));
+        moved.iter().for_each(|number| scene.set_pose(*number, &far).unwrap());
+        for error in [scene.clears(&robots).unwrap_err(), scene.tightest(&robots).unwrap_err()] {
+            let SceneError::Robot { structure: Some(name), .. } = error else {
+                panic!("{error:?}")
+            };
+            assert_eq!(name, named, "{touched} {moved:?}");
+        }
+    }
+}

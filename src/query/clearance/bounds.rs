@@ -8,7 +8,7 @@
 //!   piece.
 //!
 //! # Algorithm
-//! 1. **Begin** with pieces that turn by at most 1 rad.
+//! 1. **Begin** with pieces that turn by about 1 rad on average, or less.
 //! 2. **Measure** the first piece, if it is unmeasured, and begin step 2 again.
 //! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Its `found` is then not
 //!    used.
@@ -150,8 +150,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
             let upper = self.upper();
             // Measuring a piece may raise its rank. An unmeasured piece ends the loop only if even
             // its `lower` is at least `upper`.
-            let can_wait = first.is_measured || first.least >= upper;
-            if can_wait && first.least >= upper - self.aim {
+            let is_final = first.is_measured || first.least >= upper;
+            if is_final && first.least >= upper - self.aim {
                 return Ok(true);
             }
             if first.least > limit {
@@ -175,6 +175,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 self.pieces.push_whole(piece);
             }
         }
+        // No piece is left that can be divided. Pairs beyond `limit` were never begun.
         Ok(limit >= self.upper() - self.aim)
     }
 
