@@ -318,11 +318,11 @@ mod tests {
             let mut visited: Vec<_> = std::iter::from_fn(next).map(|(_, pair)| pair).collect();
             visited.sort_unstable();
             let wanted: Vec<_> = all.filter(|pair| apart(*pair) <= bound).collect();
-            count += lists[0].len() * lists[1].len() - wanted.len();
-            far += visited.len() - wanted.len();
             for pair in &wanted {
                 assert!(visited.binary_search(pair).is_ok(), "round {round}: {pair:?}");
             }
+            count += lists[0].len() * lists[1].len() - wanted.len();
+            far += visited.len() - wanted.len();
         }
         assert!(0 < far && 20 * far < count, "{far} of {count}");
     }

@@ -348,7 +348,7 @@ impl PlacedTube<'_> {
             1
         } else {
             let [start, end] = self.arcs(&piece);
-            // With the mean k the deviation is k l^2 / 8 and the turn k l, at most 1 rad: l <= 1 / k.
+            // On average the deviation is k l^2 / 8, and the turn k l <= 1 rad.
             let curvature = self.section(section).mean_curvature;
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // The cast saturates, and NaN becomes 0.

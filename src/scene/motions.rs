@@ -542,8 +542,20 @@ fn decide_structure(
 }
 
 /// Returns the answer about a solid and a robot, given the answer about its surface. The structure
-/// is where it is at t = 0.
+/// is where it is at t = 0. A contact of the surface stays one if the side cannot be found.
 fn decide_solid(
+    of_surface: Result<MotionAnswer, ProximityError>,
+    robot: &MovingRobot,
+    structure: &mut Structure,
+) -> Result<MotionAnswer, ProximityError> {
+    let contact = of_surface.as_ref().ok().and_then(|answer| answer.contact);
+    match (decide_at_start(of_surface, robot, structure), contact) {
+        (Err(_), Some(shape)) => Ok(MotionAnswer::contact(0.0, shape)),
+        (answer, _) => answer,
+    }
+}
+
+fn decide_at_start(
     of_surface: Result<MotionAnswer, ProximityError>,
     robot: &MovingRobot,
     structure: &mut Structure,

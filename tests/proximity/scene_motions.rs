@@ -568,6 +568,46 @@ fn an_undecided_scene_says_why() {
     assert!(answer.interval[0] < answer.interval[1]);
 }
 
+/// A motion without a shape at t = 0.
+struct WithoutStart(RigidMotion);
+
+impl Motion for WithoutStart {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let radius = if t == 0.0 { Real::NAN } else { 0.1 };
+        tube.set_samples(&[Vector::ZERO, Vector::Z], &[radius], None)?;
+        self.0.shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        self.0.speed(section, shares, times)
+    }
+}
+
+/// A contact with the surface of a solid is reported although the side at t = 0 is unknown; and
+/// then nothing is clear before it.
+#[test]
+fn a_contact_outweighs_a_start_without_a_shape() {
+    let from_to = |from: Real, to: Real, y: Real| {
+        let poses = [from, to].map(|x| Pose::translation(x, y, 0.0));
+        WithoutStart(RigidMotion::new(needle(Vector::ZERO, Vector::Z, 0.1), poses).unwrap())
+    };
+    let (through, stays_near) = (from_to(-4.0, 4.0, 0.0), from_to(0.85, 0.9, 0.85));
+    for is_solid in [false, true] {
+        let mut scene = Scene::new();
+        scene.add("organ", ball(1.0), Some(0.3)).unwrap();
+        scene.set_solid(0, is_solid).unwrap();
+        let answer = scene.clears_motion(&[&through], RESOLUTION).unwrap();
+        assert_eq!(answer.decision, Decision::Contact, "{is_solid}");
+        let first = scene.time_of_contact(&[&through], RESOLUTION).unwrap();
+        assert_eq!(first.decision, Decision::Contact, "{is_solid}");
+        // The needle touches the margin when it is 1.4 away, at t = 2.6 / 8.
+        assert_eq!(first.interval[0] > 0.3, !is_solid, "{first:?}");
+        // Without a contact the error remains. The robot is within the bounding box.
+        scene.set_margin(0, Some(0.0)).unwrap();
+        assert_eq!(scene.clears_motion(&[&stays_near], RESOLUTION).is_err(), is_solid);
+    }
+}
+
 #[test]
 fn an_error_names_the_robot() {
     let fine = LinearMotion::capsules(&[Vector::ZERO, Vector::Z], &[Vector::X, Vector::Z], &[0.1]);
