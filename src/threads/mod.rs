@@ -1,6 +1,7 @@
 //! Work on all cores, and lazy values that one thread builds while others may wait for them.
 
 mod lazy;
+#[cfg(not(feature = "parallel"))]
 mod one_thread;
 mod parallel;
 #[cfg(feature = "parallel")]

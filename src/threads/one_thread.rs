@@ -1,4 +1,4 @@
-//! The same work on the thread that asks for it.
+//! In place of a pool, the thread that asks.
 
 /// The number of threads that may work.
 pub(super) fn threads() -> usize {
@@ -11,9 +11,7 @@ pub(super) fn join(one: &mut dyn FnMut(), other: &mut dyn FnMut()) {
     other();
 }
 
-/// Calls `work` with each number below `count`. With a pool, a single thread works on the items
-/// themselves.
-#[cfg(not(feature = "parallel"))]
+/// Calls `work` with each number below `count`.
 pub(super) fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }

@@ -1,6 +1,6 @@
 //! The same work for many items, on all cores (feature `parallel`) or on one.
 
-use super::{one_thread, pool};
+use super::pool;
 use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
@@ -25,7 +25,7 @@ pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
 
 /// The number of threads that may work.
 pub(crate) fn threads() -> usize {
-    if IS_ALONE.get() { one_thread::threads() } else { pool::threads() }
+    if IS_ALONE.get() { 1 } else { pool::threads() }
 }
 
 /// Calls `work` with the index of every item, and the item. An item should take some microseconds.
@@ -44,14 +44,14 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync
 
 /// Runs two closures, on two cores if that is worth it.
 pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
-    let (mut one, mut other) = (Some(one), Some(other));
-    let run_one = &mut || one.take().into_iter().for_each(|one| one());
-    let run_other = &mut || other.take().into_iter().for_each(|other| other());
-    if is_worth_it && threads() > 1 {
-        pool::join(run_one, run_other);
-    } else {
-        one_thread::join(run_one, run_other);
+    if !is_worth_it || threads() == 1 {
+        one();
+        return other();
     }
+    let (mut one, mut other) = (Some(one), Some(other));
+    pool::join(&mut || one.take().into_iter().for_each(|one| one()), &mut || {
+        other.take().into_iter().for_each(|other| other())
+    });
 }
 
 /// Answers questions in chunks, each chunk with its own memory.

@@ -1,5 +1,5 @@
-//! Work on the threads of a pool. No other file uses one. Nothing here is generic, so the pool's code
-//! is compiled once.
+//! Work on the threads of a pool. No other file uses one. Nothing here is generic, so the pool's
+//! code is compiled once.
 
 use rayon::prelude::*;
 

@@ -46,9 +46,9 @@ pub struct Options {
     pub allow_no_position: bool,
     /// Points along the robot, from base to tip. A text file (.csv, .tsv, .txt, .dat) has a line
     /// for each point: x,y,z and optionally the radius of the segment that begins there. A heading
-    /// is optional: it names x,y,z, and r,a,s or l,p,s state the frame; a radius or
-    /// diameter may have any column. A line that begins with # is skipped unless it is such a
-    /// heading or states the frame. Or a .vtp, .vtk or .mrk.json file
+    /// is optional: it names x,y,z, and r,a,s or l,p,s state the frame; a radius or diameter may
+    /// have any column. A line that begins with # is skipped unless it is such a heading or states
+    /// the frame. Or a .vtp, .vtk or .mrk.json file
     #[arg(
         long,
         visible_alias = "centerline",

@@ -125,7 +125,7 @@ impl Ears {
         let is_blocker = |ears: &Self, other: u32| {
             let p = ears.outline[other as usize];
             if places.contains(&p) {
-                return other != corner && p == b && ears.leads_into(other, places, 0.0);
+                return ears.leads_into(other, corner, 0.0);
             }
             turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
         };
@@ -136,12 +136,17 @@ impl Ears {
         Ok(false)
     }
 
-    /// Returns whether an edge at a corner at the place of b leads between the edges ab and bc.
-    fn leads_into(&self, corner: u32, [a, b, c]: [Point; 3], rounding: f64) -> bool {
-        self.neighbours[corner as usize].iter().any(|&end| {
-            let end = self.outline[end as usize];
+    /// Returns whether another corner is at the place of `corner`, and an edge of it leads between
+    /// the edges of `corner`.
+    fn leads_into(&self, other: u32, corner: u32, rounding: f64) -> bool {
+        let [a, b, c] = self.places(corner);
+        let leads = |end: &u32| {
+            let end = self.outline[*end as usize];
             turn(a, b, end) > rounding && turn(b, c, end) > rounding
-        })
+        };
+        other != corner
+            && self.outline[other as usize] == b
+            && self.neighbours[other as usize].iter().any(leads)
     }
 
     /// Returns the first corner after `start` whose triangle is not turned over and has no corner
@@ -155,10 +160,9 @@ impl Ears {
             if turn(a, b, c) >= -ROUNDING {
                 let is_inside = |ears: &Self, other: u32| {
                     let p = ears.outline[other as usize];
-                    if other != corner && p == b && ears.leads_into(other, places, ROUNDING) {
-                        return true;
-                    }
-                    [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| turn(from, to, p) > ROUNDING)
+                    let is_in = |&[from, to]: &[Point; 2]| turn(from, to, p) > ROUNDING;
+                    ears.leads_into(other, corner, ROUNDING)
+                        || [[a, b], [b, c], [c, a]].iter().all(is_in)
                 };
                 if self.find_in(places, is_inside)?.is_none() {
                     return Ok(Some(corner));
