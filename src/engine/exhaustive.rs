@@ -38,7 +38,7 @@ use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use crate::query::contacts::{ContactCollector, ContactMemory, ContactQuery, Wall};
 use crate::robot::Chain;
-use crate::search::exhaustive::{Kernels, Pass, PassGoal, Triangles};
+use crate::search::exhaustive::{Kernels, Pass, PassGoal, Triangles, Visit};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -74,7 +74,7 @@ use std::sync::Arc;
 pub struct Exhaustive<T: SearchPrecision> {
     level: Level,
     triangles: Arc<Triangles<T>>,
-    culling: bool,
+    visit: Visit<T>,
     work: Work,
     pass: Pass<T>,
     contact_memory: ContactMemory,
@@ -92,7 +92,7 @@ impl<T: SearchPrecision> Clone for Exhaustive<T> {
         Self {
             level: self.level,
             triangles: Arc::clone(&self.triangles),
-            culling: self.culling,
+            visit: self.visit,
             work: Work::default(),
             pass: Pass::default(),
             contact_memory: ContactMemory::default(),
@@ -132,7 +132,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
         Self {
             level,
             triangles: Arc::new(Triangles::new(level, mesh)),
-            culling: true,
+            visit: Visit::culled(),
             work: Work::default(),
             pass: Pass::default(),
             contact_memory: ContactMemory::default(),
@@ -147,7 +147,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) {
-        self.culling = culling;
+        self.visit = if culling { Visit::culled() } else { Visit::every_pair() };
     }
 
     /// Sets the instruction set, to compare it with the widest of this machine.
@@ -169,7 +169,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
         aim: PassGoal,
     ) {
         self.work +=
-            self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
+            self.pass.run(self.level, self.visit, &self.triangles, robots, 0..usize::MAX, aim);
     }
 
     /// Answers many robots, in groups of [`count_at_once`].
@@ -261,7 +261,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         // Takes links together as long as a pass can keep all their pairs within the margin.
         let Self {
             level,
-            culling,
+            visit,
             ref triangles,
             ref mut pass,
             ref mut contact_memory,
@@ -281,7 +281,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
             let end = first + count;
             *work += pass.run(
                 level,
-                culling,
+                visit,
                 triangles,
                 once(Ok(robot)),
                 first..end,

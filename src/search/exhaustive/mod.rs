@@ -5,4 +5,4 @@ mod pass;
 mod scan;
 
 pub(crate) use pass::{Pass, PassGoal, Triangles};
-pub(crate) use scan::Kernels;
+pub(crate) use scan::{Kernels, Visit};

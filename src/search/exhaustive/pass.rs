@@ -8,7 +8,7 @@
 //! 4. **Merge** the findings of all threads.
 
 use super::blocks::Blocks;
-use super::scan::{Job, JobLink, Kernels, SharedBound, ThreadFindings};
+use super::scan::{Job, JobLink, Kernels, Scan, SharedBound, ThreadFindings, Visit};
 use crate::answer::{LinkProximity, ProximityError, Work};
 use crate::distance::Scalar;
 use crate::mesh::Mesh;
@@ -106,7 +106,7 @@ impl<T: Kernels> Pass<T> {
     pub(crate) fn run<'a>(
         &mut self,
         level: Level,
-        culling: bool,
+        visit: Visit<T>,
         triangles: &Triangles<T>,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         links: Range<usize>,
@@ -130,13 +130,13 @@ impl<T: Kernels> Pass<T> {
         // A single link keeps all its pairs; otherwise no pass could ever answer it.
         let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
         let every = matches!(aim, PassGoal::Every(_)).then_some(most);
-        let (blocks, is_culling) = (&triangles.blocks, culling);
-        let job = Job { mesh, blocks, links: resolved, bounds, is_culling, stop_at_first, every };
-        scan(level, &job, findings);
+        let blocks = &triangles.blocks;
+        let job = Job { mesh, blocks, links: resolved, bounds, stop_at_first, every };
+        scan(level, &job, visit.is_culling, visit.scan, findings);
         if !double.is_empty() {
             let blocks = triangles.double(level);
-            let job = Job { mesh, blocks, links: double, bounds, is_culling, stop_at_first, every };
-            scan(level, &job, findings);
+            let job = Job { mesh, blocks, links: double, bounds, stop_at_first, every };
+            scan(level, &job, visit.is_culling, visit.scan_double, findings);
         }
         *is_full = findings.iter().any(|findings| findings.within.len() >= most);
         let (first, others) = findings.split_at_mut(1);
@@ -245,8 +245,14 @@ fn threads_for(pairs: usize) -> usize {
 }
 
 /// Step 3: every thread takes the next chunk until none is left.
-fn scan<E: Kernels>(level: Level, job: &Job<E>, findings: &mut [ThreadFindings]) {
-    if job.is_culling && !job.stop_at_first && job.every.is_none() {
+fn scan<E: Kernels>(
+    level: Level,
+    job: &Job<E>,
+    is_culling: bool,
+    scan: Scan<E>,
+    findings: &mut [ThreadFindings],
+) {
+    if is_culling && !job.stop_at_first && job.every.is_none() {
         E::first_bounds(level, job);
     }
     let next = AtomicUsize::new(0);
@@ -256,7 +262,7 @@ fn scan<E: Kernels>(level: Level, job: &Job<E>, findings: &mut [ThreadFindings])
             if chunk >= job.chunks() {
                 break;
             }
-            E::scan(level, job, chunk, findings);
+            scan(level, job, chunk, findings);
         }
     });
 }

@@ -28,9 +28,6 @@ pub(crate) struct Job<'a, E> {
     pub blocks: &'a Blocks<E>,
     pub links: &'a [JobLink<E>],
     pub bounds: &'a [SharedBound],
-    /// Whether exact lower bounds skip most pairs. Otherwise every pair costs its full distance,
-    /// discs included.
-    pub is_culling: bool,
     /// Whether any triangle within the bound answers the query.
     pub stop_at_first: bool,
     /// If every triangle that may be within the bound is wanted: the most pairs that one thread
@@ -141,9 +138,10 @@ impl<E: Lane> Job<'_, E> {
         }
     }
 
-    /// Scans one chunk of the mesh for all links.
+    /// Scans one chunk of the mesh for all links. With `CULLING` exact lower bounds skip most pairs.
+    /// Otherwise every pair costs its full distance, discs included.
     #[inline(always)]
-    pub(crate) fn scan<L: Pack<Element = E>>(
+    pub(crate) fn scan<L: Pack<Element = E>, const CULLING: bool>(
         &self,
         token: L::Token,
         chunk: usize,
@@ -163,7 +161,7 @@ impl<E: Lane> Job<'_, E> {
             let mut scan =
                 LinkScan { job: self, link: &link.link, index: link.index, best, within, work };
             match &link.searched {
-                Some(searched) => scan.run::<L>(token, searched, blocks.clone()),
+                Some(searched) => scan.run::<L, CULLING>(token, searched, blocks.clone()),
                 None => scan.measure_all(blocks.clone()),
             }
             let best = scan.best;
@@ -192,7 +190,7 @@ struct LinkScan<'a, E> {
 impl<E: Lane> LinkScan<'_, E> {
     /// Measures the triangles that may improve the best so far.
     #[inline(always)]
-    fn run<L: Pack<Element = E>>(
+    fn run<L: Pack<Element = E>, const CULLING: bool>(
         &mut self,
         token: L::Token,
         searched: &SearchLink<E>,
@@ -205,7 +203,7 @@ impl<E: Lane> LinkScan<'_, E> {
         self.work.visited += (blocks.len() * BLOCK) as u64;
         for block in blocks {
             for lane in (0..BLOCK).step_by(L::LANES) {
-                if self.job.is_culling {
+                if CULLING {
                     let (centre, radius) = triangles.spheres::<L>(token, block, lane);
                     if lanes.meets_spheres(centre, radius, limit) == 0 {
                         continue;
@@ -213,7 +211,7 @@ impl<E: Lane> LinkScan<'_, E> {
                 }
                 self.work.axis_distances += L::LANES as u64;
                 let face = triangles.faces::<L>(token, block, lane);
-                let mut nearer = if self.job.is_culling {
+                let mut nearer = if CULLING {
                     lanes.may_be_nearer(&face, limit).nearer
                 } else {
                     L::bits((lanes.distances(&face) + radius).lt(limit))
@@ -255,14 +253,44 @@ impl<E: Lane> LinkScan<'_, E> {
     }
 }
 
+/// A loop over one chunk.
+pub(super) type Scan<E> = fn(Level, &Job<E>, usize, &mut ThreadFindings);
+
+/// How a pass visits the pairs of a chunk: its loops in the precision of the search, and in double
+/// precision.
+#[derive(Clone, Copy)]
+pub(crate) struct Visit<T> {
+    pub scan: Scan<T>,
+    pub scan_double: Scan<f64>,
+    /// Whether bounds skip pairs, so that a first bound helps.
+    pub is_culling: bool,
+}
+
+impl<T: Kernels> Visit<T> {
+    /// Exact lower bounds skip most pairs.
+    pub(crate) fn culled() -> Self {
+        Self { scan: T::scan, scan_double: f64::scan, is_culling: true }
+    }
+
+    /// Every pair costs its full distance.
+    #[cfg(feature = "laboratory")]
+    pub(crate) fn every_pair() -> Self {
+        let (scan, scan_double) = (T::scan_every_pair, f64::scan_every_pair);
+        Self { scan, scan_double, is_culling: false }
+    }
+}
+
 /// A precision with its loops.
 pub(crate) trait Kernels: Lane {
     /// [`prepare`].
     fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]);
     /// [`Job::first_bounds`].
     fn first_bounds(level: Level, job: &Job<Self>);
-    /// [`Job::scan`].
+    /// [`Job::scan`] with culling.
     fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
+    /// [`Job::scan`] without culling.
+    #[cfg(feature = "laboratory")]
+    fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
 }
 
 macro_rules! kernels {
@@ -280,7 +308,22 @@ macro_rules! kernels {
 
             #[inline(never)]
             fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
-                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>>(simd, chunk, findings));
+                dispatch!(level, simd => {
+                    job.scan::<<Self as Lane>::Pack<_>, true>(simd, chunk, findings)
+                });
+            }
+
+            #[cfg(feature = "laboratory")]
+            #[inline(never)]
+            fn scan_every_pair(
+                level: Level,
+                job: &Job<Self>,
+                chunk: usize,
+                findings: &mut ThreadFindings,
+            ) {
+                dispatch!(level, simd => {
+                    job.scan::<<Self as Lane>::Pack<_>, false>(simd, chunk, findings)
+                });
             }
         }
     };
