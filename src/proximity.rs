@@ -187,7 +187,9 @@ pub use crate::answer::{
     Clearance, Decision, MotionAnswer, MotionClearance, Proof, ShapeInContact, TubePiece,
     UndecidedReason,
 };
-pub use crate::engine::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
+pub use crate::engine::{BvhSearch, Proximity};
+#[cfg(feature = "exhaustive")]
+pub use crate::engine::{Exhaustive, SearchPrecision};
 #[cfg(feature = "robots")]
 pub use crate::engine::{RobotPair, SelfQuery};
 #[cfg(feature = "robots")]

@@ -88,6 +88,7 @@ impl<T: Scalar> Face<T> {
     }
 
     /// Rebuilds the face that [`Face::new`] returned, from its `vertices` and `dual`.
+    #[cfg(feature = "exhaustive")]
     #[inline(always)]
     pub(crate) fn again(vertices: [Vec3<T>; 3], dual: [Vec3<T>; 2]) -> Self {
         Self { vertices, across: across(&vertices), dual }

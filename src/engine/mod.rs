@@ -3,6 +3,7 @@
 pub(crate) mod bvh;
 #[cfg(test)]
 mod definitions;
+#[cfg(feature = "exhaustive")]
 mod exhaustive;
 mod proximity;
 #[cfg(feature = "robots")]
@@ -13,6 +14,7 @@ mod self_query;
 pub use bvh::BvhSearch;
 #[cfg(feature = "robots")]
 pub(crate) use bvh::SceneMotion;
+#[cfg(feature = "exhaustive")]
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use proximity::Proximity;
 #[cfg(feature = "gpu")]

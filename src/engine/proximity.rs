@@ -490,6 +490,7 @@ pub(crate) fn any_triangle(mesh: &Mesh, link: &PlacedLink) -> LinkProximity {
 }
 
 /// Places the robots of a batch in the mesh's frame; an element is the error of a bad robot.
+#[cfg(feature = "exhaustive")]
 pub(crate) fn placed<'a>(
     robots: &'a [(&Chain, Pose)],
 ) -> impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>> {

@@ -34,17 +34,6 @@ pub(crate) fn rotated<T>(mut three: [T; 3], first: usize) -> [T; 3] {
     three
 }
 
-/// Writes the corners of a triangle into its lane of a block, in the triangle's own order.
-pub(crate) fn place_triangle<E: Lane>(
-    frame: &SearchFrame,
-    mesh: &Mesh,
-    triangle: u32,
-    rows: &mut [E],
-    lane: usize,
-) {
-    place_points(frame, mesh.corners(triangle), rows, lane);
-}
-
 /// Writes three points into a lane of a block.
 pub(crate) fn place_points<E: Lane>(
     frame: &SearchFrame,
@@ -97,15 +86,6 @@ pub(crate) fn load_vertices<L: Pack>(
     lane: usize,
 ) -> [Vec3<L>; 3] {
     [load(token, rows, 0, lane), load(token, rows, 3, lane), load(token, rows, 6, lane)]
-}
-
-/// Writes three coordinates to the rows `row` to `row + 2`.
-#[inline(always)]
-pub(crate) fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usize, lane: usize) {
-    let rows = &mut rows[row * BLOCK + lane..];
-    vector.x.store(rows);
-    vector.y.store(&mut rows[BLOCK..]);
-    vector.z.store(&mut rows[2 * BLOCK..]);
 }
 
 #[cfg(test)]

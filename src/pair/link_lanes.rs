@@ -71,6 +71,7 @@ impl<L: Pack> LinkLanes<L> {
 
     /// Returns upper bounds on the axis distances of the contents of spheres: some point of a
     /// sphere's contents is at most this far.
+    #[cfg(feature = "exhaustive")]
     #[inline(always)]
     pub(crate) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
         // Any point of a triangle gives an upper bound on F. Beyond a flat cap it bounds the
@@ -80,6 +81,7 @@ impl<L: Pack> LinkLanes<L> {
     }
 
     /// Returns which spheres around triangles come within `limit` of the axis, one bit per lane.
+    #[cfg(feature = "exhaustive")]
     #[inline(always)]
     pub(crate) fn meets_spheres(&self, centre: Vec3<L>, radius: L, limit: L) -> u64 {
         let reach = limit + radius;
@@ -153,6 +155,7 @@ impl<L: Pack> LinkLanes<L> {
 
     /// Returns the distances of triangles, with all discs that decide one: the paper's work for a
     /// pair.
+    #[cfg(feature = "exhaustive")]
     #[inline(always)]
     pub(crate) fn distances(&self, face: &Face<L>) -> L {
         let face = face.seen_from(self.start);
@@ -266,6 +269,7 @@ impl<E: Lane> SearchLink<E> {
 
     /// Returns an upper bound on the distance of every triangle at most `limit` from the axis: the
     /// converse of [`SearchLink::axis_limit`].
+    #[cfg(feature = "exhaustive")]
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());

@@ -136,6 +136,7 @@ impl Best {
     }
 
     /// Returns an earlier best, to be improved by triangles at most `bound` away.
+    #[cfg(feature = "exhaustive")]
     pub(crate) fn resume(bound: Real, nearest: Option<Nearest>) -> Self {
         Self { bound, nearest, below: u32::MAX }
     }

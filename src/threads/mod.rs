@@ -12,6 +12,8 @@ pub(crate) use lazy::Lazy;
 use one_thread as pool;
 #[cfg(feature = "gpu")]
 pub(crate) use parallel::on_this_thread;
+#[cfg(feature = "exhaustive")]
+pub(crate) use parallel::threads;
 #[cfg(feature = "robots")]
 pub(crate) use parallel::with_clones;
-pub(crate) use parallel::{both, each, in_chunks, threads};
+pub(crate) use parallel::{both, each, in_chunks};

@@ -16,9 +16,12 @@ mod prominence;
 mod search;
 mod triangle_candidates;
 
+#[cfg(feature = "exhaustive")]
+pub(crate) use contact_collector::ContactCollector;
+pub(crate) use contact_collector::ContactMemory;
 #[cfg(feature = "gpu")]
 pub(crate) use contact_collector::contacts_by_all_triangles;
-pub(crate) use contact_collector::{ContactCollector, ContactMemory};
 pub(crate) use prominence::ContactQuery;
 pub(crate) use search::{ContactSearch, OppositeCorners};
+#[cfg(feature = "exhaustive")]
 pub(crate) use triangle_candidates::Wall;

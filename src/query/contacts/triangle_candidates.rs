@@ -169,6 +169,7 @@ pub(crate) struct Wall<'a> {
 
 impl<'a> Wall<'a> {
     /// A wall without such a search.
+    #[cfg(feature = "exhaustive")]
     pub(crate) fn of(mesh: &'a Mesh) -> Self {
         Self { mesh, tree: None }
     }

@@ -2,7 +2,7 @@
 
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
-use crate::mesh::{BLOCK, Mesh, SearchFrame, load, load_vertices, place_triangle, store};
+use crate::mesh::{BLOCK, Mesh, SearchFrame, load, load_vertices, place_points};
 use crate::threads::each;
 
 /// Rows of a block for the bounding spheres: centre and radius.
@@ -87,9 +87,18 @@ fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]
         for lane in 0..BLOCK {
             // The last block is filled up with its last triangle.
             let triangle = ((first + block) * BLOCK + lane).min(mesh.len() - 1);
-            place_triangle(frame, mesh, triangle as u32, rows, lane);
+            place_points(frame, mesh.corners(triangle as u32), rows, lane);
         }
     }
+}
+
+/// Writes three coordinates to the rows `row` to `row + 2`.
+#[inline(always)]
+fn store<L: Pack>(vector: Vec3<L>, rows: &mut [L::Element], row: usize, lane: usize) {
+    let rows = &mut rows[row * BLOCK + lane..];
+    vector.x.store(rows);
+    vector.y.store(&mut rows[BLOCK..]);
+    vector.z.store(&mut rows[2 * BLOCK..]);
 }
 
 /// Puts the vertex opposite the longest edge first, and computes dual bases and bounding spheres.
