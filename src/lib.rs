@@ -43,9 +43,9 @@
 //! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side) decides by the mesh's
 //!   winding number, with a bound on its error.
 //! - **The queries.** Build one engine of [`proximity`] per mesh and reuse it:
-//!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same
-//!   answers. The feature `gpu` adds `gpu::GpuSearch`. The first page of [`proximity`] lists
-//!   the call for each question.
+//!   [`BvhSearch`](proximity::BvhSearch) for all questions. The features `exhaustive` and `gpu` add
+//!   others with the same answers: [`Exhaustive`](proximity::Exhaustive) and `gpu::GpuSearch`. The
+//!   first page of [`proximity`] lists the call for each question.
 //! - **The motion** (feature `tubes`).
 //!   [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that a [`Motion`]
 //!   keeps a margin at every time.
@@ -71,10 +71,11 @@
 //! | feature | for |
 //! |---|---|
 //! | none | chains of links in a mesh: distances, margins, contacts, sides; parry's shapes and queries |
-//! | `tubes` | robots as curves, motions, and proofs for others |
+//! | `tubes` | robots as curves, motions, and what others can check: certificates and proofs |
 //! | `robots` | two robots, a robot beside itself, scenes of several meshes; turns on `tubes` |
 //! | `rapier` | robots in a rapier world |
-//! | `gpu` | batches on the GPU |
+//! | `exhaustive` | the engine that visits every triangle |
+//! | `gpu` | batches on the GPU; turns on `exhaustive` |
 //! | `serde-serialize` | robots and answers as data |
 //! | `parallel` (on by default) | batches on all cores |
 //!

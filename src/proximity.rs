@@ -1,8 +1,8 @@
 //! Robot against mesh, and robot against robot: distances, contacts, margins and motions.
 //!
 //! Build one engine per mesh and reuse it for all queries. [`BvhSearch`] answers every question.
-//! [`Exhaustive`] and the engines on the GPU answer the questions of the trait [`Proximity`], with
-//! the same distances.
+//! [`Exhaustive`] (feature `exhaustive`) and the engines on the GPU answer the questions of the
+//! trait [`Proximity`], with the same distances.
 //!
 //! **A chain of links, exactly**
 //!
@@ -16,7 +16,6 @@
 //! | normal and depth of one answer, or of all answers of a query | [`contact_of`], [`contacts_of`] |
 //! | how fast a distance changes with a joint | [`Contact::rate`], [`Contact::gradient`] |
 //! | the derivative by each end, the radius and each vertex | [`derivative`] |
-//! | a proof of an answer | [`LinkProximity::certify`], [`certify_among_all`] |
 //!
 //! **A curve, between bounds** (feature `tubes`)
 //!
@@ -40,6 +39,7 @@
 //!
 //! | question | call |
 //! |---|---|
+//! | a proof of an answer about links | [`LinkProximity::certify`], [`certify_among_all`] |
 //! | a proof of a margin for a short checker | [`prove`], [`prove_tube`], [`prove_motion`] |
 //!
 //! **Inside or outside**

@@ -20,24 +20,12 @@ pub(super) const ROUNDED: Real = 16.0 * f64::UNIT_ROUNDOFF;
 impl LinkProximity {
     /// Checks this answer against a link and a triangle: `on_robot` lies in the link, `on_mesh`
     /// lies on the triangle, and `distance` is the distance both of the two points and of the two
-    /// shapes.
+    /// shapes. `measured` is the pair's result now.
     ///
     /// # Errors
     /// The answer does not fit.
-    pub(crate) fn check_answer(
-        &self,
-        link: &PlacedLink,
-        corners: [Vector; 3],
-    ) -> Result<(), ProximityError> {
-        self.check_answer_of(&link.measure(self.witness.triangle, corners), || *link, corners)
-    }
-
-    /// Same as [`check_answer`](Self::check_answer), for a pair that is measured already.
-    ///
-    /// # Errors
-    /// As [`check_answer`](Self::check_answer).
     #[inline(always)]
-    pub(crate) fn check_answer_of(
+    pub(crate) fn check_answer(
         &self,
         measured: &Nearest,
         link: impl FnOnce() -> PlacedLink,

@@ -92,7 +92,8 @@ impl LinkProximity {
     ) -> Result<Certificate, ProximityError> {
         let link = placed_link(self, robot, pose)?;
         let corners = corners(mesh.vertices(), mesh.indices(), self.witness.triangle as usize)?;
-        self.check_answer(&link, corners)?;
+        let measured = link.measure(self.witness.triangle, corners);
+        self.check_answer(&measured, || link, corners)?;
         Ok(self.certified(robot, pose)?.bounds(corners))
     }
 

@@ -57,7 +57,7 @@ pub(crate) fn contacts(
         Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
     };
     let check = |answer: &LinkProximity, pair: &PlacedPair, measured: &Nearest| {
-        answer.check_answer_of(measured, || pair.link(), pair.corners)
+        answer.check_answer(measured, || pair.link(), pair.corners)
     };
     try_add_contacts(Level::new(), answers, pair_of, check, out).inspect_err(|_| out.clear())
 }
@@ -76,7 +76,7 @@ pub(crate) fn measured_answer(
     let link = placed_link(answer, robot, pose)?;
     let corners = corners(mesh.vertices(), mesh.indices(), answer.witness.triangle as usize)?;
     let measured = Measured::new(&link, corners);
-    answer.check_answer_of(&measured.nearest(&link, answer.witness.triangle), || link, corners)?;
+    answer.check_answer(&measured.nearest(&link, answer.witness.triangle), || link, corners)?;
     Ok((link, corners, measured))
 }
 

@@ -4,6 +4,7 @@
 mod answer_check;
 #[cfg(feature = "robots")]
 mod beside_itself;
+#[cfg(feature = "tubes")]
 mod certificate;
 mod contact;
 mod coordinates;
