@@ -214,9 +214,7 @@ mod tests {
     use crate::distance::lanes::Lane;
     use crate::distance::lanes::tests::levels;
     use crate::distance::{Scalar, dispatch};
-    use crate::mesh::{
-        BLOCK, Mesh, SearchFrame, ends_of, load_vertices, place_points, place_triangle,
-    };
+    use crate::mesh::{BLOCK, Mesh, SearchFrame, ends_of, load_vertices, place_points};
     use crate::pair::{PlacedLink, SearchLink};
     use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
@@ -310,7 +308,7 @@ mod tests {
             let Some(searched) = SearchLink::<f32>::new(&link, &frame) else { continue };
             let (mut rows, mut across) = ([0.0; 9 * BLOCK], [0.0; 9 * BLOCK]);
             for triangle in 0..BLOCK as u32 {
-                place_triangle(&frame, &mesh, triangle, &mut rows, triangle as usize);
+                place_points(&frame, mesh.corners(triangle), &mut rows, triangle as usize);
                 place_points(&frame, mesh.corners_across(triangle), &mut across, triangle as usize);
             }
             for level in levels() {
