@@ -24,7 +24,7 @@
 //! keeps it. If w' differs from 0, `|(w - w') x t|` changes at most at the rate
 //! `|w - w'| (|w| + turn)`, and is at most `|w - w'|`.
 
-use super::common_frame::{CommonFrame, UP, product};
+use super::common_frame::{CommonFrame, FrameSizes, UP, product};
 use super::rigid_path::RigidPath;
 use super::{Motion, Speed};
 use crate::curve::{Section, Tube};
@@ -83,9 +83,8 @@ impl CarriedPiece {
         start.max(end) + slope * self.beside
     }
 
-    /// The largest `|turn x tangent|`.
-    fn across(&self, turn: Vector) -> Real {
-        let size = length(turn);
+    /// The largest `|turn x tangent|`; `size` is `|turn|`.
+    fn across(&self, turn: Vector, size: Real) -> Real {
         if self.directions.contains(&Vector::ZERO) {
             return size;
         }
@@ -163,74 +162,20 @@ impl<'a> CarriedMotion<'a> {
         }
     }
 
-    /// Bounds the speeds of a piece relative to its own frame and to another one (claims 1 and 2).
-    /// `stated` is the stated speed of the piece. Two frames that do not turn need no `piece`.
+    /// Returns the frame beside another one.
+    pub(crate) fn beside(&self, other: &CommonFrame) -> FramePair {
+        FramePair::new([self.frame(), *other], self.half)
+    }
+
+    /// Bounds the speeds of a piece relative to its own frame and to another one. `stated` is the
+    /// stated speed of the piece. Two frames that do not turn need no `piece`.
     pub(crate) fn speeds(
         &self,
         stated: Speed,
         piece: impl FnOnce() -> CarriedPiece,
         other: &CommonFrame,
     ) -> CarriedSpeed {
-        let (frame, half) = (self.frame(), self.half);
-        if frame.is_shift() && other.is_shift() {
-            let own = stated.point + frame.off;
-            let rounding = length(frame.velocity) + length(other.velocity);
-            let difference = length(frame.velocity - other.velocity)
-                + other.off
-                + 64.0 * Real::UNIT_ROUNDOFF * rounding;
-            return CarriedSpeed {
-                own: Speed { point: own * UP, turn: stated.turn * UP },
-                seen: Speed { point: (own + difference) * UP, turn: stated.turn * UP },
-            };
-        }
-        let piece = &piece();
-        // Claim 1: `away` is D0, `own` U, `carried` g.
-        let [turning, relative_turn] = [frame.turn, frame.turn - other.turn].map(length);
-        let twist = product(2.0 * frame.turn_off, || {
-            let away = piece.most(1.0, |point| point - frame.at);
-            away + half * (stated.point + frame.off)
-        });
-        let own = stated.point + frame.off + twist;
-        let carried = if turning == 0.0 {
-            0.0
-        } else {
-            piece.most(turning, |point| frame.turn.cross(point - frame.at)) + half * turning * own
-        };
-        // Claim 2: `between` is v - v', `relative_turn` |w - w'|, `difference` |F - G|.
-        let between = frame.velocity - other.velocity;
-        let mut rate = other.turn.cross(between).length();
-        if relative_turn > 0.0 {
-            rate += relative_turn * (carried + own);
-        }
-        let mut difference =
-            piece.most(relative_turn, |point| frame.field(point) - other.field(point));
-        difference += half * rate;
-        if other.turn == Vector::ZERO {
-            difference = difference.min(length(between) + carried);
-        }
-        let other_off = other.off
-            + product(other.turn_off, || {
-                let velocities = length(frame.velocity) + length(other.velocity);
-                let moved = half * (own + carried + velocities);
-                piece.most(1.0, |point| point - other.at) + moved
-            });
-        let rounding = frame.rounding(piece.reach) + other.rounding(piece.reach);
-        let difference = difference + other_off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
-        // Directions.
-        let turn = stated.turn + frame.turn_off;
-        let twisted = if relative_turn == 0.0 {
-            0.0
-        } else {
-            let still = if other.turn == Vector::ZERO { 0.0 } else { turning };
-            let change = half * relative_turn * (still + turn);
-            (piece.across(frame.turn - other.turn) + change).min(relative_turn)
-        };
-        let twisted =
-            twisted + other.turn_off + 64.0 * Real::UNIT_ROUNDOFF * (turning + length(other.turn));
-        CarriedSpeed {
-            own: Speed { point: own * UP, turn: turn * UP },
-            seen: Speed { point: (own + difference) * UP, turn: (turn + twisted) * UP },
-        }
+        self.beside(other).speeds(stated, piece)
     }
 
     /// Bounds the speed of a piece of the middle shape in the mesh's frame.
@@ -246,5 +191,103 @@ impl<'a> CarriedMotion<'a> {
         };
         let piece = || CarriedPiece::new(tube, pose, part, shares, true);
         self.speeds(stated, piece, &CommonFrame::REST).seen
+    }
+}
+
+/// The frame that carries a robot and another frame, in an interval of time, with the terms of
+/// claims 1 and 2 that are the same for all pieces.
+#[derive(Clone, Copy)]
+pub(crate) struct FramePair {
+    frame: CommonFrame,
+    other: CommonFrame,
+    /// Half of the interval, rounded up.
+    half: Real,
+    sizes: [FrameSizes; 2],
+    /// |v - v'|.
+    between: Real,
+    /// |w - w'|.
+    relative_turn: Real,
+    /// |w' x (v - v')|.
+    rate: Real,
+}
+
+impl FramePair {
+    fn new([frame, other]: [CommonFrame; 2], half: Real) -> Self {
+        let between = frame.velocity - other.velocity;
+        Self {
+            frame,
+            other,
+            half,
+            sizes: [frame.sizes(), other.sizes()],
+            between: length(between),
+            relative_turn: length(frame.turn - other.turn),
+            rate: other.turn.cross(between).length(),
+        }
+    }
+
+    /// Bounds the speeds of a piece relative to its own frame and to the other one (claims 1 and
+    /// 2). `stated` is the stated speed of the piece. Two frames that do not turn need no `piece`.
+    pub(crate) fn speeds(
+        &self,
+        stated: Speed,
+        piece: impl FnOnce() -> CarriedPiece,
+    ) -> CarriedSpeed {
+        let Self { frame, other, half, sizes, between, relative_turn, .. } = *self;
+        if frame.is_shift() && other.is_shift() {
+            let own = stated.point + frame.off;
+            let rounding = sizes[0].speed + sizes[1].speed;
+            let difference = between + other.off + 64.0 * Real::UNIT_ROUNDOFF * rounding;
+            return CarriedSpeed {
+                own: Speed { point: own * UP, turn: stated.turn * UP },
+                seen: Speed { point: (own + difference) * UP, turn: stated.turn * UP },
+            };
+        }
+        let piece = &piece();
+        // Claim 1: `away` is D0, `own` U, `carried` g.
+        let turning = sizes[0].turning;
+        let twist = product(2.0 * frame.turn_off, || {
+            let away = piece.most(1.0, |point| point - frame.at);
+            away + half * (stated.point + frame.off)
+        });
+        let own = stated.point + frame.off + twist;
+        let carried = if turning == 0.0 {
+            0.0
+        } else {
+            piece.most(turning, |point| frame.turn.cross(point - frame.at)) + half * turning * own
+        };
+        // Claim 2: `difference` is |F - G|.
+        let mut rate = self.rate;
+        if relative_turn > 0.0 {
+            rate += relative_turn * (carried + own);
+        }
+        let mut difference =
+            piece.most(relative_turn, |point| frame.field(point) - other.field(point));
+        difference += half * rate;
+        if other.turn == Vector::ZERO {
+            difference = difference.min(between + carried);
+        }
+        let other_off = other.off
+            + product(other.turn_off, || {
+                let moved = half * (own + carried + (sizes[0].speed + sizes[1].speed));
+                piece.most(1.0, |point| point - other.at) + moved
+            });
+        let [rounding, other_rounding] = sizes.map(|sizes| sizes.rounding(piece.reach));
+        let difference =
+            difference + other_off + 64.0 * Real::UNIT_ROUNDOFF * (rounding + other_rounding);
+        // Directions.
+        let turn = stated.turn + frame.turn_off;
+        let twisted = if relative_turn == 0.0 {
+            0.0
+        } else {
+            let still = if other.turn == Vector::ZERO { 0.0 } else { turning };
+            let change = half * relative_turn * (still + turn);
+            (piece.across(frame.turn - other.turn, relative_turn) + change).min(relative_turn)
+        };
+        let twisted =
+            twisted + other.turn_off + 64.0 * Real::UNIT_ROUNDOFF * (turning + sizes[1].turning);
+        CarriedSpeed {
+            own: Speed { point: own * UP, turn: turn * UP },
+            seen: Speed { point: (own + difference) * UP, turn: (turn + twisted) * UP },
+        }
     }
 }

@@ -194,13 +194,36 @@ impl CommonFrame {
         Speed { point: own + twist, turn: stated.turn + self.turn_off }
     }
 
-    /// The largest coordinate of a, and the terms of the rounding of the field.
-    pub(super) fn rounding(&self, reach: Real) -> Real {
-        length(self.velocity) + length(self.turn) * (reach + self.at.abs().max_element())
+    /// The sizes of the frame's vectors.
+    pub(super) fn sizes(&self) -> FrameSizes {
+        FrameSizes {
+            speed: length(self.velocity),
+            turning: length(self.turn),
+            reach: self.at.abs().max_element(),
+        }
     }
 
     /// F at a point in the middle of the interval.
     pub(super) fn field(&self, point: Vector) -> Vector {
         self.velocity + self.turn.cross(point - self.at)
+    }
+}
+
+/// The sizes of the vectors of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct FrameSizes {
+    /// |v|.
+    pub speed: Real,
+    /// |w|.
+    pub turning: Real,
+    /// The largest coordinate of a.
+    reach: Real,
+}
+
+impl FrameSizes {
+    /// Returns `|v| + |w| reach`, the size of the terms of the field at points whose coordinates
+    /// are at most `reach`.
+    pub(super) fn rounding(self, reach: Real) -> Real {
+        self.speed + self.turning * (reach + self.reach)
     }
 }

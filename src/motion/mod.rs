@@ -19,7 +19,7 @@ mod tests;
 mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
-pub(crate) use carried_motion::{CarriedMotion, CarriedPiece};
+pub(crate) use carried_motion::{CarriedMotion, CarriedPiece, FramePair};
 pub use common_frame::CommonFrame;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;

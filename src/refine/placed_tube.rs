@@ -309,11 +309,12 @@ impl PlacedTube<'_> {
         pieces.clear();
         for number in sections.clone() {
             let [first, _, last] = self.ranges(number);
-            pieces.extend([first, last].into_iter().flatten());
+            [first, last].into_iter().flatten().for_each(|piece| pieces.push(piece));
         }
         for number in sections {
-            let [_, middle, _] = self.ranges(number);
-            pieces.extend(middle.into_iter().flat_map(|middle| self.divided(middle, coarse).rev()));
+            if let [_, Some(middle), _] = self.ranges(number) {
+                pieces.extend(self.divided(middle, coarse).rev());
+            }
         }
     }
 
@@ -365,6 +366,9 @@ impl PlacedTube<'_> {
     /// if no range is clear.
     fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
+        if section.faces.iter().all(Option::is_none) {
+            return [section.first, section.last];
+        }
         let [first, last] = self.faces(section).map(|face| face.is_some());
         let room = [0, 1].map(|end| ROOM * section.room(end));
         let needed = room[0] * Real::from(u8::from(first)) + room[1] * Real::from(u8::from(last));

@@ -50,7 +50,7 @@ use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::minimum_rounds::NearestFirst;
-use super::moving_tube::{MovingTube, SmallRooms};
+use super::moving_tube::{MeshFrames, MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
 use super::pending_piece::{UnresolvedPiece, UnresolvedPieces};
 use super::refinement::refine;
@@ -239,6 +239,7 @@ impl MotionSearch<'_> {
         let first = unresolved.len();
         unresolved_bodies.clear();
         let moving = MovingTube {
+            frames: MeshFrames::new(&carried, &mesh_speed),
             motion: carried,
             mesh: mesh_speed,
             unresolved: UnresolvedPieces {

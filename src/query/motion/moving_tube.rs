@@ -11,7 +11,7 @@ use super::relative_motion::RelativeMotion;
 use super::separating_planes::{PlaneTest, SeparatingPlanes};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
-use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound};
+use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound, FramePair};
 use crate::pair::Nearest;
 use crate::refine::{Body, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
 use crate::search::hierarchy::MeshSpeed;
@@ -25,11 +25,27 @@ const MIN_ROOM: Real = 0.1;
 pub(crate) struct MovingTube<'a> {
     pub motion: CarriedMotion<'a>,
     pub mesh: MeshSpeed,
+    pub frames: MeshFrames,
     pub unresolved: UnresolvedPieces<'a>,
     /// The last triangle found.
     pub last: &'a mut Option<u32>,
     pub planes: &'a mut SeparatingPlanes,
     pub small_rooms: &'a mut SmallRooms,
+}
+
+/// The frame that carries the robot, if the motion states one, beside two frames of the mesh.
+pub(crate) struct MeshFrames {
+    at_rest: Option<FramePair>,
+    /// Beside the shift that the vertices of the mesh share.
+    shifting: Option<FramePair>,
+}
+
+impl MeshFrames {
+    pub(crate) fn new(motion: &CarriedMotion, mesh: &MeshSpeed) -> Self {
+        let beside = |frame| motion.has_frame().then(|| motion.beside(&frame));
+        let shifting = (mesh.shift != Vector::ZERO).then(|| CommonFrame::shifting(mesh.shift));
+        Self { at_rest: beside(CommonFrame::REST), shifting: shifting.and_then(beside) }
+    }
 }
 
 impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
@@ -44,21 +60,20 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
     ) -> Result<[Real; 2], ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
         let range = SectionRange { section, shares, outer, radius: tube.radius(piece) };
-        let MeshSpeed { most, shift, apart } = self.mesh;
+        let MeshSpeed { most, apart, .. } = self.mesh;
         let mut speed = self.motion.stated(section as usize, shares);
         let mut with_shift = Real::INFINITY;
-        if self.motion.has_frame() {
+        if let Some(at_rest) = &self.frames.at_rest {
             let placed = &tube.tube;
             let has_rim = outer.is_flat();
             let of = || {
                 let section = placed.section(section);
                 CarriedPiece::new(placed.tube, &placed.pose, section, shares, has_rim)
             };
-            let seen = |frame| self.motion.speeds(speed, of, &frame).seen;
-            if shift != Vector::ZERO {
-                with_shift = seen(CommonFrame::shifting(shift)).point;
+            if let Some(shifting) = &self.frames.shifting {
+                with_shift = shifting.speeds(speed, of).seen.point;
             }
-            speed = seen(CommonFrame::REST);
+            speed = at_rest.speeds(speed, of).seen;
         }
         let ApproachSpeed { centreline, rim } = ApproachSpeed::of(speed, &range)?;
         let up = 1.0 + 2.0 * Real::UNIT_ROUNDOFF;
