@@ -151,7 +151,7 @@ impl ContactMemory {
         let first = self.ranks.len();
         self.ranks.resize(first + candidates.triangles.len(), NONE);
         let ranks = &mut self.ranks[first..];
-        cull(NearLink { wall, candidates, index: &self.index }, ranks, &mut self.cull_rings);
+        cull(&NearLink { wall, candidates, index: &self.index }, ranks, &mut self.cull_rings);
         let others = candidates.triangles.iter().zip(ranks).filter(|(_, rank)| **rank != CULLED);
         self.measured.extend(others.map(|(known, _)| known.triangle));
     }
@@ -171,7 +171,7 @@ impl ContactMemory {
                 continue;
             }
             self.index.number(candidates, wall.mesh.len());
-            let near = NearLink { wall, candidates, index: &self.index };
+            let near = &NearLink { wall, candidates, index: &self.index };
             let ranks = &mut self.ranks[triangles[0].triangles..triangles[1].triangles];
             for (rank, ranked) in (1..).zip(ranked) {
                 if let Some(candidate) = near.index_of(ranked.nearest.triangle) {

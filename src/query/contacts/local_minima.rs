@@ -108,7 +108,8 @@
 //! triangle.
 
 use super::long_rings::{LongRings, SHORT_RING};
-use super::triangle_candidates::NearLink;
+use super::triangle_candidates::{ALL_PARTS, NearLink};
+use crate::distance::lanes::set_bits;
 use crate::mesh::{PARTS, ends_of, find_root};
 use crate::pair::{Measurement, Nearest, PlacedLink, rounding};
 use crate::robot::share_along;
@@ -137,7 +138,7 @@ impl Default for CullRing {
 
 /// Step 1: gives the rank [`CULLED`] to the candidates that certainly lie on a slope towards a
 /// nearer triangle.
-pub(super) fn cull(near: NearLink, ranks: &mut [u32], rings: &mut LongRings<CullRing>) {
+pub(super) fn cull(near: &NearLink, ranks: &mut [u32], rings: &mut LongRings<CullRing>) {
     rings.clear();
     // A culled triangle may cull another; the second round finds most such cases.
     for _ in 0..2 {
@@ -153,7 +154,7 @@ pub(super) fn cull(near: NearLink, ranks: &mut [u32], rings: &mut LongRings<Cull
 /// Returns true if the nearest point of a candidate certainly lies on a corner or an edge that it
 /// shares with a culled triangle, or with one that is nearer by far.
 fn lies_on_slope(
-    near: NearLink,
+    near: &NearLink,
     candidate: usize,
     ranks: &[u32],
     rings: &mut LongRings<CullRing>,
@@ -199,7 +200,7 @@ pub(super) fn nearest_first(measured: &mut [Measurement], margin: Real) -> &[Mea
 /// The sweep of steps 3 and 4 over the wall near one link.
 pub(super) struct Sweep<'a> {
     pub link: &'a PlacedLink,
-    pub near: NearLink<'a>,
+    pub near: &'a NearLink<'a>,
     /// The rank of each candidate.
     pub ranks: &'a [u32],
     /// The triangles within the margin, nearest first.
@@ -240,7 +241,8 @@ impl Sweep<'_> {
         // Parts with the least point come first: they are met at the triangle's own distance. The
         // others are kept, with the rank that is met.
         let (mut others_met, mut count) = ([(0, CULLED); 2 * PARTS], 0);
-        for part in (0..PARTS).filter(|&part| is_loose || !known.is_beyond(part)) {
+        let mut root = rank;
+        for part in set_bits(if is_loose { ALL_PARTS } else { known.near_parts() }) {
             let add = |ring: &mut SweepRing, other: u32, index: Option<usize>| match index {
                 Some(index) => {
                     ring.add(self.ranks[index], near.candidates.triangles[index].lower);
@@ -259,14 +261,13 @@ impl Sweep<'_> {
             // so is each part that they share.
             let meets_culled = ring.has_culled || ring.culled_lower < known.upper;
             let first = ring.first;
-            let met_ranks = [meets_culled.then_some(CULLED), (first < rank).then_some(first)];
-            for with in met_ranks.into_iter().flatten() {
-                if find_root(self.piece, with) == find_root(self.piece, rank) {
+            for (is_met, with) in [(meets_culled, CULLED), (first < rank, first)] {
+                if !is_met || find_root(self.piece, with) == root {
                     continue;
                 }
                 let ends = ends_of(corners, part);
                 if is_on(nearest.on_mesh, ends, own_rounding) {
-                    self.meet([rank, with], ends, gap_of(part), true);
+                    root = self.meet([rank, root, with], ends, gap_of(part), true);
                 } else {
                     others_met[count] = (part, with);
                     count += 1;
@@ -274,19 +275,20 @@ impl Sweep<'_> {
             }
         }
         if is_loose {
-            self.meet_across_seams(rank, true);
+            root = self.meet_across_seams([rank, root], true);
         }
         for &(part, with) in &others_met[..count] {
-            self.meet([rank, with], ends_of(corners, part), gap_of(part), false);
+            root = self.meet([rank, root, with], ends_of(corners, part), gap_of(part), false);
         }
         if is_loose {
-            self.meet_across_seams(rank, false);
+            self.meet_across_seams([rank, root], false);
         }
     }
 
     /// Merges a triangle with the pieces of nearer triangles beyond its seams: beyond the seams
-    /// that hold its least point, or beyond the other seams.
-    fn meet_across_seams(&mut self, rank: u32, met_there: bool) {
+    /// that hold its least point, or beyond the other seams. `root` is the first rank of its piece.
+    /// Returns the first rank of the merged piece.
+    fn meet_across_seams(&mut self, [rank, mut root]: [u32; 2], met_there: bool) -> u32 {
         let Measurement { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
         let mesh = self.near.wall.mesh;
         for seam in mesh.parts().seams(nearest.triangle) {
@@ -296,34 +298,38 @@ impl Sweep<'_> {
             let ends = seam.ends.map(|end| mesh.vertices()[end as usize]);
             let holds_least_point = is_on(nearest.on_mesh, ends, own_rounding + 2.0 * seam.gap);
             if with < rank && holds_least_point == met_there {
-                self.meet([rank, with], ends, seam.gap, holds_least_point);
+                root = self.meet([rank, root, with], ends, seam.gap, holds_least_point);
             }
         }
+        root
     }
 
-    /// Merges the pieces of two triangles if a part that both share is at most `2 t` above the
-    /// farther of the two minima.
+    /// Merges the pieces of two triangles, `rank` and `with`, if a part that both share is at most
+    /// `2 t` above the farther of the two minima. `root` is the first rank of the piece of `rank`;
+    /// returns it after the merge.
     #[inline(always)]
     fn meet(
         &mut self,
-        ranks: [u32; 2],
+        [rank, root, with]: [u32; 3],
         [from, to]: [Vector; 2],
         gap: Real,
         holds_least_point: bool,
-    ) {
-        let [one, other] = ranks.map(|rank| find_root(self.piece, rank));
-        if one == other {
-            return;
+    ) -> u32 {
+        let other = find_root(self.piece, with);
+        if root == other {
+            return root;
         }
-        let merge_limit = self.minimum_with_rounding(one).max(self.minimum_with_rounding(other))
+        let merge_limit = self.minimum_with_rounding(root).max(self.minimum_with_rounding(other))
             + rounding(self.link.extent_with([from, to, to]))
             + gap;
-        if self.ranked[ranks[0] as usize - 1].nearest.distance <= merge_limit
-            && (holds_least_point || self.link.comes_within(merge_limit, from, to))
+        if self.ranked[rank as usize - 1].nearest.distance > merge_limit
+            || !holds_least_point && !self.link.comes_within(merge_limit, from, to)
         {
-            // The merged piece appeared with the nearer of the two.
-            self.piece[one.max(other) as usize] = one.min(other);
+            return root;
         }
+        // The merged piece appeared with the nearer of the two.
+        self.piece[root.max(other) as usize] = root.min(other);
+        root.min(other)
     }
 
     /// Returns the minimum of a piece plus its rounding; a piece that merges below this (and the

@@ -40,7 +40,7 @@ impl<K: Default> LongRings<K> {
     /// index among the candidates.
     pub(super) fn ring_of(
         &mut self,
-        near: NearLink,
+        near: &NearLink,
         [candidate, part]: [usize; 2],
         mut add: impl FnMut(&mut K, u32, Option<usize>),
     ) -> &K {

@@ -1,7 +1,7 @@
 //! The triangles that may be within a margin of a link, with the bounds of the search, before they
 //! are measured.
 
-use crate::mesh::{BLOCK, Mesh, PART_WITHOUT};
+use crate::mesh::{BLOCK, Mesh, PART_WITHOUT, PARTS};
 use crate::search::hierarchy::WideBvh;
 use parry3d_f64::math::Real;
 
@@ -151,13 +151,17 @@ impl TriangleCandidate {
         PART_WITHOUT[self.away as usize].map(usize::from)
     }
 
-    /// Returns true if a corner or an edge is certainly farther than the nearest point. A corner
-    /// is, if one of its edges is.
-    pub(crate) fn is_beyond(&self, part: usize) -> bool {
-        let edge = |number: usize| self.beyond >> (number % 3) & 1 == 1;
-        if part < 3 { edge(part) || edge(part + 2) } else { edge(part) }
+    /// Returns the corners and edges that may hold the nearest point, one bit for each: those that
+    /// are not certainly farther. A corner is farther, if one of its edges is.
+    pub(crate) fn near_parts(&self) -> u64 {
+        let edges = u64::from(self.beyond);
+        let corners = (edges | edges << 1 | edges >> 2) & 0b111;
+        ALL_PARTS & !(corners | edges << 3)
     }
 }
+
+/// All corners and edges of a triangle, one bit for each.
+pub(crate) const ALL_PARTS: u64 = (1 << PARTS) - 1;
 
 /// The mesh, and its hierarchy if the search culls triangles on slopes.
 #[derive(Clone, Copy)]
