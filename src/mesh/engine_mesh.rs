@@ -92,6 +92,16 @@ impl Mesh {
         &self.indices
     }
 
+    /// The vertices that triangles use.
+    #[cfg(feature = "tubes")]
+    pub(crate) fn used_vertices(&self) -> impl Iterator<Item = usize> {
+        let (all, some) = match &self.used {
+            None => (0..self.vertices.len(), &[][..]),
+            Some(used) => (0..0, &used[..]),
+        };
+        all.chain(some.iter().map(|&vertex| vertex as usize))
+    }
+
     /// The number of triangles.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()
@@ -100,7 +110,8 @@ impl Mesh {
     /// The corners of a triangle.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
-        self.indices[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+        let [a, b, c] = self.indices[triangle as usize];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 
     /// The corners and edges that triangles share.

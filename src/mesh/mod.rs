@@ -13,5 +13,5 @@ pub(crate) use seams::Seam;
 pub(crate) use search_frame::{SearchFrame, round};
 pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};
 pub(crate) use triangle_block::{
-    BLOCK, first_of_face, load, load_vertices, place_face, place_points, rotated, splat,
+    BLOCK, first_of_face, load, load_vertices, place_face, place_points, points_in, rotated, splat,
 };

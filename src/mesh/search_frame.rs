@@ -68,5 +68,5 @@ impl SearchFrame {
 
 /// A point in the precision of the search.
 pub(crate) fn round<E: Lane>(point: Vector) -> Vec3<E> {
-    Vec3::from(point.to_array().map(E::round))
+    Vec3::new(E::round(point.x), E::round(point.y), E::round(point.z))
 }

@@ -18,20 +18,29 @@ pub(crate) fn place_face<E: Lane>(
     rows: &mut [E],
     lane: usize,
 ) {
-    let corners = mesh.corners(triangle).map(|corner| frame.point(corner));
+    let corners = points_in(frame, mesh.corners(triangle));
     put(rotated(corners, Face::first_of(corners)), rows, lane);
 }
 
 /// Returns the corner of a triangle that [`place_face`] writes first.
 pub(crate) fn first_of_face<E: Lane>(frame: &SearchFrame, mesh: &Mesh, triangle: u32) -> usize {
-    Face::first_of(mesh.corners(triangle).map(|corner| frame.point::<E>(corner)))
+    Face::first_of(points_in::<E>(frame, mesh.corners(triangle)))
+}
+
+/// Three points in the precision of the search.
+#[inline(always)]
+pub(crate) fn points_in<E: Lane>(frame: &SearchFrame, [a, b, c]: [Vector; 3]) -> [Vec3<E>; 3] {
+    [frame.point(a), frame.point(b), frame.point(c)]
 }
 
 /// Rotates the values of three corners or edges so that `first` comes first.
 #[inline(always)]
-pub(crate) fn rotated<T>(mut three: [T; 3], first: usize) -> [T; 3] {
-    three.rotate_left(first);
-    three
+pub(crate) fn rotated<T>([a, b, c]: [T; 3], first: usize) -> [T; 3] {
+    match first {
+        0 => [a, b, c],
+        1 => [b, c, a],
+        _ => [c, a, b],
+    }
 }
 
 /// Writes three points into a lane of a block.
@@ -41,7 +50,7 @@ pub(crate) fn place_points<E: Lane>(
     rows: &mut [E],
     lane: usize,
 ) {
-    put(points.map(|point| frame.point(point)), rows, lane);
+    put(points_in(frame, points), rows, lane);
 }
 
 #[inline(always)]

@@ -84,14 +84,18 @@ struct Edge {
 /// Counts the edges by their faces, and returns the boundary edges as pairs of places. Each ring of
 /// a side is walked once.
 fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32; 2]>) {
-    let places =
-        |triangle: u32| mesh.indices()[triangle as usize].map(|vertex| parts.first_at(vertex));
-    let mut is_counted = vec![[false; PARTS]; mesh.len()];
+    // Whether the sides of faces ascend, until their ring is counted.
+    let sides_of = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|vertex| parts.first_at(vertex));
+        let is_face = a != b && b != c && c != a;
+        [a < b, b < c, c < a].map(|ascends| is_face.then_some(ascends))
+    };
+    let mut sides: Vec<_> = mesh.indices().iter().map(sides_of).collect();
     let (mut report, mut boundary) = (SurfaceReport::default(), Vec::new());
     let mut count = |Edge { ends, faces, ascending }: Edge| {
         report.unbalanced_edges += usize::from(faces > 1 && 2 * ascending != faces);
         match (faces, ascending) {
-            (0, _) | (2, 1) => {}
+            (2, 1) => {}
             (1, _) => boundary.push(ends),
             (2, _) => report.misoriented_edges += 1,
             _ => report.nonmanifold_edges += 1,
@@ -99,20 +103,18 @@ fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32;
     };
     // The edges of all sides, if edges of different sides may be the same.
     let mut divided = Vec::new();
-    for triangle in 0..mesh.len() as u32 {
+    for (triangle, corners) in mesh.indices().iter().enumerate() {
         for side in 3..PARTS {
-            if is_counted[triangle as usize][side] {
+            if sides[triangle][side - 3].is_none() {
                 continue;
             }
-            let mut edge = Edge { ends: [0; 2], faces: 0, ascending: 0 };
-            for (triangle, side) in parts.ring(triangle, side) {
-                is_counted[triangle as usize][side] = true;
-                let corners @ [a, b, c] = places(triangle);
-                if a != b && b != c && c != a {
-                    let [from, to] = ends_of(corners, side);
-                    edge.ends = [from.min(to), from.max(to)];
+            let [from, to] = ends_of(*corners, side).map(|vertex| parts.first_at(vertex));
+            let ends = [from.min(to), from.max(to)];
+            let mut edge = Edge { ends, faces: 0, ascending: 0 };
+            for (triangle, side) in parts.ring(triangle as u32, side) {
+                if let Some(ascends) = sides[triangle as usize][side - 3].take() {
                     edge.faces += 1;
-                    edge.ascending += usize::from(from < to);
+                    edge.ascending += usize::from(ascends);
                 }
             }
             if parts.has_seams() {

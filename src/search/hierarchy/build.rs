@@ -13,7 +13,7 @@ use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Scalar, Widest, dispatch};
-use crate::mesh::{BLOCK, Mesh, SearchFrame};
+use crate::mesh::{BLOCK, Mesh, SearchFrame, points_in};
 use crate::threads::{both, each};
 use fearless_simd::Level;
 use std::cmp::Ordering;
@@ -126,7 +126,7 @@ fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
     let mut items = vec![Item::default(); mesh.len()];
     each(&mut items.chunks_mut(Mesh::TASK_SIZE).collect::<Vec<_>>(), |share, items| {
         for (triangle, item) in (share * Mesh::TASK_SIZE..).zip(items.iter_mut()) {
-            let [a, b, c] = mesh.corners(triangle as u32).map(|corner| frame.point(corner));
+            let [a, b, c] = points_in(frame, mesh.corners(triangle as u32));
             *item = (triangle as u32, (a + b + c).into());
         }
     });

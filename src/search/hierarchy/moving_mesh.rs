@@ -83,14 +83,17 @@ impl MovingMesh {
         self.leaves.clear();
         (self.speed, self.reach) = (MeshSpeed::default(), 0.0);
         let mut ways = CoordinateRange::NOTHING;
+        mesh.used_vertices().for_each(|vertex| {
+            let ends = [mesh.vertices()[vertex], to[vertex]];
+            self.speed.most = self.speed.most.max((ends[1] - ends[0]).length());
+            ways = ways.with(ends[1] - ends[0]);
+            self.reach = self.reach.max(ends[0].abs().max(ends[1].abs()).max_element());
+        });
         for leaf in &tree.leaves {
             let mut sides = [CoordinateRange::NOTHING; 2];
             for vertex in leaf.triangles().flat_map(|triangle| mesh.indices()[triangle as usize]) {
                 let ends = [mesh.vertices()[vertex as usize], to[vertex as usize]];
                 sides = [sides[0].with(ends[0]), sides[1].with(ends[1])];
-                self.speed.most = self.speed.most.max((ends[1] - ends[0]).length());
-                ways = ways.with(ends[1] - ends[0]);
-                self.reach = self.reach.max(ends[0].abs().max(ends[1].abs()).max_element());
             }
             self.leaves.push(sides);
         }
