@@ -400,22 +400,25 @@ impl<'a> RadiusRuns<'a> {
         let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });
         distinct.extend_from_slice(if has_repeats { &points[..1] } else { &[] });
         let (mut must_stay, mut radii) = (vec![0], vec![]);
-        // `here`: index of the last distinct point. `first`: the first radius of the run.
-        // `widest`: the largest radius of the run.
-        let (mut here, mut first, mut widest): (usize, Real, Real) = (0, 0.0, 0.0);
+        // `here`: index of the last distinct point. `first`: the first radius of the run; not a
+        // number before the first run. `widest`: the largest radius of the run.
+        let (mut here, mut first, mut widest): (usize, Real, Real) = (0, Real::NAN, 0.0);
         for (ends, &radius) in points.windows(2).zip(segment_radii) {
             if ends[0] == ends[1] {
                 continue;
             }
-            if here == 0 {
-                (first, widest) = (radius, radius);
-            } else if !is_same(first, radius) {
-                must_stay.push(here);
-                radii.push(widest);
-                (first, widest) = (radius, radius);
+            if radius != first {
+                if is_same(first, radius) {
+                    widest = widest.max(radius);
+                } else {
+                    if here > 0 {
+                        must_stay.push(here);
+                        radii.push(widest);
+                    }
+                    (first, widest) = (radius, radius);
+                }
             }
             here += 1;
-            widest = widest.max(radius);
             if has_repeats {
                 distinct.push(ends[1]);
             }
