@@ -11,7 +11,7 @@
 //! | search, single precision | 1.2 to 1.5 | 1.8 to 3.1 | AVX-512 |
 //! | exhaustive search, both precisions | 1.15 to 2.2 | 2.0 to 5.0 | AVX-512 |
 //! | measuring of links and triangles | up to 1.2 | up to 1.8 | AVX-512 |
-//! | measuring of links and links | up to 1.03 | up to 1.14 | AVX2 |
+//! | measuring of links and links | up to 1.13 | up to 1.46 | AVX-512 |
 //! | bounds of the nodes (refit) | 1.0 | 1.0 | SSE2 |
 //! | search, double precision | 1.3 to 1.5 | 2.4 to 3.0 | SSE2 |
 //!
@@ -25,8 +25,6 @@
 #[derive(Clone, Copy)]
 pub(crate) enum Widest {
     Sse2,
-    #[cfg_attr(not(feature = "robots"), expect(dead_code, reason = "pairs of links alone need it"))]
-    Avx2,
     Avx512,
 }
 
@@ -52,14 +50,14 @@ macro_rules! dispatch {
     };
     ($widest:expr, $level:expr, $token:ident => $work:expr) => {{
         use fearless_simd::{Level, Simd};
-        use $crate::distance::Widest::{Avx2, Avx512};
+        use $crate::distance::Widest::Avx512;
         let level: Level = $level;
         if const { matches!($widest, Avx512) } && let Some($token) = level.as_avx512() {
             $token.vectorize(
                 #[inline(always)]
                 || $work,
             )
-        } else if const { matches!($widest, Avx512 | Avx2) } && let Some($token) = level.as_avx2() {
+        } else if const { matches!($widest, Avx512) } && let Some($token) = level.as_avx2() {
             $token.vectorize(
                 #[inline(always)]
                 || $work,

@@ -6,7 +6,7 @@ use super::pair_lanes::{BATCH, Rows, link, put_link, store};
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
 use crate::distance::lanes::{Pack, set_bits};
-use crate::distance::{Unfused, Widest, dispatch};
+use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
@@ -64,7 +64,7 @@ impl LinkPairBatch {
             self.packs[0].measure_first(bound);
             return;
         }
-        dispatch!(Widest::Avx2, level, simd => self.measure_packs::<Unfused<_>>(simd, bound));
+        dispatch!(level, simd => self.measure_packs::<Unfused<_>>(simd, bound));
     }
 
     #[inline(always)]
