@@ -342,15 +342,14 @@ impl SectionSamples<'_> {
     }
 
     /// Returns the largest curvature of a segment if the curve passes through all samples of a
-    /// cluster beside it. Bends of more than 1 rad, or within the radius, are excluded: the tube
-    /// would be refused.
-    fn through_crowds(&self, from: usize) -> Real {
+    /// cluster beside it. Bends of more than 1 rad along `longest`, the greatest length of the
+    /// segment, or within the radius, are excluded: the tube would be refused.
+    fn through_crowds(&self, from: usize, longest: Real) -> Real {
         if self.clusters.is_empty() {
             return 0.0;
         }
         let point = self.first + from;
-        let length = self.arcs[from + 1] - self.arcs[from];
-        let is_possible = |bend: &Real| bend * length <= 1.0 && bend * self.radius < 1.0;
+        let is_possible = |bend: &Real| bend * longest <= 1.0 && bend * self.radius < 1.0;
         let beside = bend_at(self.clusters, point, 1).into_iter().chain(bend_at(
             self.clusters,
             point + 1,
@@ -414,9 +413,9 @@ impl SectionSamples<'_> {
                 hat = if sharper.around > hat.around { sharper } else { hat };
             }
             local = local.max(least);
-            let curvature = local.max(own).max(behind).max(self.through_crowds(from));
-            bounds.push(CurveBound { curvature, off: 0.0 });
             let longest = here.map_or(0.0, |segment| 2.0 * segment.length - segment.least);
+            let curvature = local.max(own).max(behind).max(self.through_crowds(from, longest));
+            bounds.push(CurveBound { curvature, off: 0.0 });
             let turn = curvature * longest;
             if turn > 1.0 && sharpest.is_none() {
                 let is_own = local <= own.max(behind);

@@ -1,6 +1,6 @@
 //! Tubes of many sections, coils from frames, turns that are stated and samples taken twice.
 
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, RobotPair, SelfQuery};
 use parry_continuum::{Chain, Tube};
@@ -193,5 +193,39 @@ fn samples_taken_twice_with_equal_gaps_are_accepted() {
         let tube = Tube::with_constant_radius(&points, 1.0, None);
         let tube = tube.unwrap_or_else(|error| panic!("{round} {gap}: {error}"));
         assert!((tube.length() - f64::from(count - 1)).abs() < 1.0);
+    }
+}
+
+/// Samples taken twice, a little apart in any direction: the curve through both, which is possible
+/// up to a turn of 1 rad, never makes the tube refused.
+#[test]
+fn a_sample_taken_twice_is_never_refused() {
+    let tube = |points: &[Vector], gap: f64| {
+        let tube = Tube::with_constant_radius(points, 0.1, None);
+        assert!(tube.is_ok(), "{gap}: {tube:?}, {points:?}");
+    };
+    let points = [
+        [0.0, 0.0, 0.0],
+        [0.002499979166736832, 0.0, 0.4999916667083332],
+        [0.00020805083454900324, -0.003027543328457393, 0.5068006198289623],
+        [0.009999666671112184, 0.0, 0.999933334666654],
+        [0.022498312550622845, 0.0, 1.499775010124783],
+    ];
+    tube(&points.map(Vector::from_array), 7.8e-3);
+    for seed in 0..rounds(4000) {
+        let random = &mut Random::new(seed);
+        let pose = random.pose(5.0);
+        let gap = 0.03 * random.between(0.1, 1.0);
+        let bend = [1e-6, 0.02, 0.1][seed as usize % 3];
+        let mut points = Vec::new();
+        for k in 0..8 {
+            let a = bend * f64::from(k);
+            let at = Vector::new((1.0 - a.cos()) / bend, 0.0, a.sin() / bend);
+            points.push(pose * at);
+            if random.between(0.0, 1.0) < 0.6 && k > 0 && k < 7 {
+                points.push(pose * (at + random.direction() * gap));
+            }
+        }
+        tube(&points, gap);
     }
 }
