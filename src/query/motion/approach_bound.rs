@@ -21,8 +21,9 @@ use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 /// The most intervals into which time is divided; in each a point moves by the resolution. The
-/// rounding of a time, 2^-53, is far smaller, and more shapes would take too long.
-const MAX_INTERVALS: Real = (1_u64 << 24) as Real;
+/// rounding of half of an interval ([`half_length`]), 2^-51, is far smaller. Few intervals become so
+/// short: those around a contact. The number of shapes is limited elsewhere.
+const MAX_INTERVALS: Real = (1_u64 << 40) as Real;
 
 /// The motion in an interval of time, relative to its midpoint.
 #[derive(Clone, Copy, Debug)]

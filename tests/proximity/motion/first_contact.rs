@@ -5,7 +5,8 @@ use continuum_demo::{ctr, ventricle};
 use continuum_testing::{Random, rounds};
 use parry_continuum::LinearMotion;
 use parry_continuum::parry::math::{Real, Vector};
-use parry_continuum::proximity::{BvhSearch, Decision};
+use parry_continuum::parry::shape::Ball;
+use parry_continuum::proximity::{BvhSearch, Decision, RobotPair};
 
 /// The bracket of the first contact is as narrow as the resolution, where the motion goes straight
 /// into the wall.
@@ -40,6 +41,34 @@ fn the_first_contact_is_found() {
         }
     }
     assert!(later <= 3, "{later} of {found}");
+}
+
+/// A resolution of a billionth of the way: what keeps the margin is clear, as for a coarser one, and
+/// the first contact is bracketed as finely.
+#[test]
+fn a_resolution_far_finer_than_the_motion_is_kept() {
+    let (vertices, triangles) = Ball::new(1.0).to_trimesh(4, 2);
+    let mut search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
+    let needle = |x: Real, y: Real| [Vector::new(x, y, 0.0), Vector::new(x + 1.0, y, 0.0)];
+    let moves = |from: [Vector; 2], to: [Vector; 2]| LinearMotion::capsules(&from, &to, &[0.5]);
+    let passes = moves(needle(-50.0, 3.0), needle(50.0, 3.0)).unwrap();
+    let meets = moves(needle(-52.5, 0.0), needle(47.5, 0.0)).unwrap();
+    let rests = moves(needle(0.5, 0.0), needle(0.5, 0.0)).unwrap();
+    let mut pair = RobotPair::new();
+    for resolution in [1e-3, 1e-7, 1e-9] {
+        assert!(search.clears_motion(&passes, 0.5, resolution).unwrap().is_clear());
+        assert!(pair.clears_motions(&passes, &rests, 0.5, resolution).unwrap().is_clear());
+        // The tip comes from -51.5 and is at -1.5, or beside the other robot at -0.5, after 50 of
+        // 100 or 51.
+        let beside_mesh = search.time_of_contact(&meets, 0.0, resolution).unwrap();
+        let beside_robot = pair.time_of_contact(&meets, &rests, 0.0, resolution).unwrap();
+        for ([clear_until, t], first) in
+            [(beside_mesh.interval, 0.5), (beside_robot.interval, 0.51)]
+        {
+            assert!(clear_until <= first && first <= t + 1e-14, "{clear_until} {t}");
+            assert!(100.0 * (t - clear_until) <= 1.5 * resolution + 1e-12, "{clear_until} {t}");
+        }
+    }
 }
 
 /// A wire that slides in a wall's plane, apart from it by rounding at most: no shape decides,
