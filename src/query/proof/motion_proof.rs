@@ -109,17 +109,24 @@ pub(crate) fn tube_shape(
         while let Some(place) = waiting.pop() {
             let piece = piece(tube, section, &place, is_moving);
             let mut over = 0.125 * piece.curvature * piece.length * piece.length;
-            // Ahead of an inner flat end lies the tube.
             let is_at_face = piece.flat[0] && place.from == section.first
                 || piece.flat[1] && place.to == section.last;
+            let (arcs, turn) = (tube.arcs(&place), piece.radius * piece.curvature);
             if piece.stated.is_some() {
                 over *= 4.0;
             } else if is_at_face {
-                over += 0.5 * piece.radius * piece.curvature * piece.length;
+                over += 0.5 * turn * piece.length;
+            } else {
+                // Ahead of an inner flat end lies the tube, up to the face. A disc across the chord
+                // reaches ahead of the tube's own disc by `turn * length`, to first order, and that
+                // disc is behind the face by `(1 - turn) room`. Half of it is for higher orders.
+                let rooms = [arcs[0] - section.start, section.end - arcs[1]];
+                for (_, room) in piece.flat.into_iter().zip(rooms).filter(|(flat, _)| *flat) {
+                    over = over.max(2.0 * turn * piece.length - (1.0 - turn) * room);
+                }
             }
             // A NaN piece is kept: no plane separates it.
             if over > most && place.to - place.from > 1 {
-                let arcs = tube.arcs(&place);
                 let tick = tube.tube.tick(section, 0.5 * (arcs[0] + arcs[1]));
                 let tick = tick.max(place.from + 1).min(place.to - 1);
                 waiting.extend([
