@@ -13,7 +13,8 @@
 //!    undecided interval.
 //!
 //! The least slack combines the slacks of the structures, then of the pairs of robots, each nearest
-//! first by their bounds ([`LeastSlack`]). All pairs of robots share one limit of work.
+//! first by their bounds ([`LeastSlack`]). All pairs of robots share one limit of work; each but
+//! the last takes at most half of what is left.
 //!
 //! The queries share the shapes of their first intervals. They share nothing else, so each decides
 //! as if it were the only one.
@@ -195,9 +196,9 @@ impl Scene {
     ///
     /// Returns `None` if there is no robot or no such margin. `lower` <= least slack <= `upper`.
     /// `tolerance` is a length: the bounds differ by at most the tolerance if the motions' shapes
-    /// allow that ([`resolved`](SceneMotionClearance::resolved)), and all pairs of robots together
-    /// need at most a million pairs of pieces. The margins of robots to themselves do not
-    /// count.
+    /// allow that ([`resolved`](SceneMotionClearance::resolved)), within a million pairs of pieces
+    /// for all pairs of robots. Of several pairs the nearest takes at most half of them, and each
+    /// later one at most half of the rest. The margins of robots to themselves do not count.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};
@@ -272,26 +273,32 @@ impl Scene {
                 let slack = at_least.max(0.0) - margin;
                 // An infinite margin and an infinite bound.
                 let bound = if slack.is_nan() { Real::NEG_INFINITY } else { slack.next_down() };
-                (bound, middle, pair)
+                (bound, [middle, at_least], pair)
             })
             .collect();
         order.sort_unstable_by(|one, other| {
-            let by_bound = one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1));
+            let by_bound = one.0.total_cmp(&other.0).then(one.1[0].total_cmp(&other.1[0]));
             by_bound.then(one.2.cmp(&other.2))
         });
-        for (bound, _, pair) in order {
+        let last = order.len().saturating_sub(1);
+        for (number, (bound, [_, at_least], pair)) in order.into_iter().enumerate() {
             if bound > least.upper() {
                 break;
             }
+            // A pair that needs all of the work leaves half of it to the others.
+            let kept = if number == last { 0 } else { left / 2 };
+            left -= kept;
             let [a, b] = pair.map(|robot| robots[robot].in_scene());
             let limit = least.limit(margin);
             let RobotMotionClearance { lower, upper, uncertainty, t, sections, witness, .. } = self
                 .pair
                 .ask_clearance_of_motion([&a, &b], tolerance, limit, &mut left)
                 .map_err(|error| of_motions(pair, [&a, &b], error))?;
+            left += kept;
             let robots = pair.map(|robot| robot as u32);
             let place = ScenePlace::Robots { robots, sections, witness };
-            least.offer([1, pair[0], pair[1]], margin, [lower, upper], uncertainty, (t, place));
+            let bounds = [lower.max(at_least), upper];
+            least.offer([1, pair[0], pair[1]], margin, bounds, uncertainty, (t, place));
         }
         Ok(least)
     }
@@ -661,5 +668,22 @@ mod tests {
             pairs *= 2;
         }
         assert!(pairs > 16 && !is_enough(8, pairs) && is_enough(8, 4 * pairs), "{pairs}");
+
+        // A third robot passes at a distance of 21, on a diagonal. Its boxes meet those of the
+        // others, so bounds on its distance need work, which no other pair uses up.
+        let [from, to] = [bend(-30.0, 0.0, 0.0), bend(0.0, -30.0, 0.0)];
+        let third = LinearMotion::chain(&from, &to, &[0.5; 8]);
+        let motions = [&robots[0], &robots[1], &third.unwrap()];
+        for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0]] {
+            let motions = order.map(|robot| motions[robot]);
+            let least = scene.with_moving_robots(&motions, |scene, robots| {
+                scene.least_slack(robots, 1e-9, 64 * pairs)
+            });
+            let BoundedSlack { lower, upper, .. } = least.unwrap().answer(1e-9).unwrap();
+            // At t = 1 the tips are 2 apart, and their rims reach 1/2 across links of the slope
+            // (1 - (7/8)^2) / 1.25.
+            let gap = 2.0 - 1.0 / Real::hypot(1.0, 0.1875);
+            assert!(0.9 < lower && lower <= gap && gap <= upper + 1e-9, "{lower} {upper}");
+        }
     }
 }

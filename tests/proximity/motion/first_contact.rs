@@ -43,8 +43,8 @@ fn the_first_contact_is_found() {
     assert!(later <= 3, "{later} of {found}");
 }
 
-/// A resolution of a billionth of the way: what keeps the margin is clear, as for a coarser one, and
-/// the first contact is bracketed as finely.
+/// A resolution of a billionth of the way: what keeps the margin is clear, as for a coarser one,
+/// and the first contact is bracketed as finely.
 #[test]
 fn a_resolution_far_finer_than_the_motion_is_kept() {
     let (vertices, triangles) = Ball::new(1.0).to_trimesh(4, 2);
