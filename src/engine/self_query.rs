@@ -53,7 +53,8 @@ impl SelfQuery {
     ///
     /// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of
     ///    the joints. The pair counts if the robot leads nowhere nearer from the closest places of
-    ///    the two axes. Axes that open by at most 2^-24 rad count as parallel, in every frame.
+    ///    the two axes. Axes that open by at most 2^-24 rad count as parallel, in every frame, also
+    ///    if they are skew by up to 35 degrees about the bend between them.
     /// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if
     ///    flat, or the wider side of a step, also if round.
     /// 3. Two faces that look at one another, at any turn: the end of a link and the start of a
@@ -271,8 +272,7 @@ impl SelfQuery {
     ///
     /// 1. Two places with a turn of at least pi between them. (For a tube made from a chain: two
     ///    links that count for [`minimum`](Self::minimum).)
-    /// 2. A flat face and a place in front of it, with a turn of at least pi / 2. (For links with a
-    ///    turn of at least pi, `minimum` tests a face only if the axes are nearest there.)
+    /// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
     /// 3. Two faces that look at one another.
     ///
     /// It leaves out a piece if the robot leads nearer to the face from every place of the piece.

@@ -41,20 +41,27 @@
 //! Two faces that face each other count if 1 and 3 hold for both.
 //!
 //! # Two links
-//! A pair of links with a turn of at least pi counts at the closest places of their axes:
+//! A pair of links with a turn of at least pi counts at the closest places of their axes, or at a
+//! face:
 //!
-//! 1. If inner places of both axes are as near within rounding ([`JoinedLink::are_level`]), the
-//!    pair counts: there the way is perpendicular to both axes. Of parallel axes every place of the
+//! 1. If inner places of both axes are as near within rounding (`JoinedLink::are_level`), the pair
+//!    counts: there the way is perpendicular to both axes. Of parallel axes every place of the
 //!    common stretch is as near, and the closest places that the narrow phase returns are any of
-//!    them.
-//! 2. If the closest place of a link is at a face, the rule for faces decides.
-//! 3. Otherwise condition 2 must hold on both sides. If it fails, the robot comes nearer beyond
-//!    that place, so the place is no local minimum.
+//!    them. Legs may be skew by up to 35 degrees: if the bend is their common perpendicular, places
+//!    next to the bend are as near as the bend.
+//! 2. Otherwise, if no closest place is at a face, the pair counts if condition 2 holds on both
+//!    sides. If it fails, the robot comes nearer beyond that place, so the place is no local
+//!    minimum.
+//! 3. Otherwise the pair counts if a face counts beside the other link. The closest places of the
+//!    axes do not tell: the rim of a flat face may be nearest where the axis leads on.
 //!
-//! **Level.** Axes run level if the way between them, at the middle of their common stretch, has a
-//! component of at most `e + |w| (2^-24 + 4 e / l)` along each axis. Here `e` is the rounding of
-//! the coordinates and `l` the length of the shorter link. The last term is the rounding of an
-//! axis; 2^-24 rad is the share that counts as parallel in every frame.
+//! In case 3 the closest points of the face and the other link are those of both links, which are
+//! convex: by condition 1 no point of the face's link lies ahead of `p` along `w`.
+//!
+//! **Level.** Axes run level if the way between them has a component of at most
+//! `e + |w| (2^-24 + 4 e / l)` along each axis. Here `e` is the rounding of the coordinates and `l`
+//! the length of the shorter link. The last term is the rounding of an axis; 2^-24 rad is the share
+//! that counts as parallel in every frame.
 //!
 //! # Claim
 //! A local minimum of the distance between two links, at a face of one of them, satisfies the rule.
@@ -91,29 +98,59 @@ pub(crate) struct JoinedLink {
     pub beyond: [Option<PlacedLink>; 2],
 }
 
-/// The largest error of a distance.
+/// The largest errors of what is measured of two links of one robot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tolerance(pub Real);
+pub(crate) struct Tolerance {
+    /// Of the difference of two points in the robot's frame.
+    pub points: Real,
+    /// Of the distance in the pair's own coordinates, in which the two links are measured. It
+    /// depends neither on the frame nor on the order of the links.
+    pub pair: Real,
+}
 
 impl Tolerance {
-    /// Returns the largest error, in any direction, of the vector between two convex bodies that
-    /// are `distance` apart.
+    /// Returns the largest error of a distance.
+    pub fn of_distance(self) -> Real {
+        self.points + self.pair
+    }
+
+    /// Returns the largest error, in any direction, of the measured vector between two convex
+    /// bodies that are `distance` apart.
     ///
-    /// **Definitions.** `e`: the error of a distance (this value). `d`: the distance. `w`: the
-    /// vector between the measured points, which belong to the two bodies; `|w| <= d + e`. `w*`:
-    /// the shortest such vector, `|w*| = d`.
+    /// **Claim.** The error is at most [`error_of_way`] of `pair`, plus `points`.
     ///
-    /// **Proof.** `w` lies in the difference of the bodies, a convex set whose point closest to 0
-    /// is `w*`. So `w . w* >= |w*|^2`, and
-    ///
-    /// ```text
-    /// |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
-    /// ```
+    /// **Proof.** The coordinates of the pair are differences of the given coordinates. They err by
+    /// `pair` with all that is computed from them, wherever the robot is. Only the two points are
+    /// then rounded in the robot's frame, which moves each end of the vector by less than half of
+    /// `points`. □
     pub fn of_way(self, distance: Real) -> Real {
-        // Two roots keep all products inside the range of numbers.
-        self.0.sqrt() * (2.0 * distance + self.0).sqrt()
+        self.points + error_of_way(self.pair, distance)
     }
 }
+
+/// Returns the largest error, in any direction, of the vector between two convex bodies that are
+/// `distance` apart, if that vector leads between points of the two bodies and is longer than the
+/// shortest by at most `error`.
+///
+/// **Definitions.** `e`: `error`. `d`: the distance. `w`: the vector; `|w| <= d + e`. `w*`: the
+/// shortest such vector, `|w*| = d`.
+///
+/// **Proof.** `w` lies in the difference of the bodies, a convex set whose point closest to 0 is
+/// `w*`. So `w . w* >= |w*|^2`, and
+///
+/// ```text
+/// |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
+/// ```
+///
+/// The root is sharp: if axes run almost level, an error of `e` moves their closest places far.
+fn error_of_way(error: Real, distance: Real) -> Real {
+    // Two roots keep all products inside the range of numbers.
+    error.sqrt() * (2.0 * distance + error).sqrt()
+}
+
+/// The square of the sine of the largest angle of axes that run beside one another: 35 degrees.
+/// Robots with right angles, whose bends are perpendicular to both legs, are on either side.
+const MOST_SKEW: Real = 1.0 / 3.0;
 
 /// Below this many errors the vector between surfaces has no usable direction: it errs by more than
 /// a sixth of its length.
@@ -155,20 +192,29 @@ impl JoinedLink {
         }
     }
 
-    /// Returns the largest error of the distance of two links of one robot; the vector between them
-    /// is longer than the shortest by at most as much.
+    /// Returns the largest errors of what is measured of two links of one robot.
     ///
-    /// Let `S` be the largest coordinate of both links plus their radius.
-    /// - The narrow phase errs by 16 u of the pair's extent, which is at most 2 S.
-    /// - The links' coordinates in the pair's frame err by sqrt(3) 4 u S.
-    /// - The points in the robot's frame and their difference err by sqrt(3) 3 u S.
+    /// Let `S` be the largest coordinate of both links plus their radius, and `X` a length that no
+    /// coordinate difference of two of their points exceeds.
+    /// - The coordinates of the pair err by less than 4 u X, and the narrow phase by 16 u X:
+    ///   together by less than 32 u X.
+    /// - The points in the robot's frame and their difference err by sqrt(3) 3 u S more, less than
+    ///   16 u S.
     ///
-    /// The sum is below 64 u S.
+    /// A robot that was rounded in another frame is another robot: two of its points are as far
+    /// apart within 16 u S.
     pub(crate) fn tolerance(&self, other: &Self) -> Tolerance {
         let reach = |link: &PlacedLink| {
             link.start().abs().max(link.end().abs()).max_element() + link.radius()
         };
-        Tolerance(64.0 * Real::UNIT_ROUNDOFF * reach(&self.link).max(reach(&other.link)))
+        let [one, two] = [&self.link, &other.link];
+        let middle = |link: &PlacedLink| link.start() + 0.5 * link.along();
+        let size = |link: &PlacedLink| link.along().length() + link.radius();
+        let extent = (middle(two) - middle(one)).length() + size(one) + size(two);
+        Tolerance {
+            points: 16.0 * Real::UNIT_ROUNDOFF * reach(one).max(reach(two)),
+            pair: 32.0 * Real::UNIT_ROUNDOFF * extent,
+        }
     }
 
     fn centre(&self, end: usize) -> Vector {
@@ -266,65 +312,83 @@ impl JoinedLink {
 
     /// Returns whether a pair that turns by pi or more counts (section "Two links").
     pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
-        if self.are_level(other, tolerance) {
+        let (feet, _) = self.link.nearest_on_axes(&other.link);
+        let way = feet[1] - feet[0];
+        let slack = self.level_slack(other, way, LEVEL, tolerance);
+        if self.are_level(other, way, slack) {
             return true;
         }
-        let (feet, _) = self.link.nearest_on_axes(&other.link);
-        let [one, two] = [(self, feet[0]), (other, feet[1])].map(|(joined, foot)| {
-            let end = joined.end_at(foot, tolerance.0);
-            end.filter(|&end| joined.is_face(end))
+        let rise = self.level_slack(other, way, 0.0, tolerance);
+        let sides = [(self, other, feet[0], -way), (other, self, feet[1], way)];
+        let is_inner_minimum = sides.into_iter().all(|(joined, other, foot, way)| {
+            let end = joined.end_closest_to(&other.link, foot, rise);
+            end.is_none_or(|end| !joined.is_face(end) && joined.stays_beyond(end, way, slack))
         });
-        let of_face = |joined: &Self, end: usize, other: &Self| {
-            let nearest = joined.face_to_link(end, &other.link);
-            joined.face_counts(end, other, &nearest, tolerance)
-        };
-        match (one, two) {
-            (None, None) => {
-                let way = feet[1] - feet[0];
-                let slack = self.level_slack(other, way, tolerance);
-                let to = |from: Vector, way: Vector| Way {
-                    from,
-                    way,
-                    place: from + way,
-                    slack,
-                    rounding: tolerance.0,
-                };
-                other.stays(&to(feet[0], way)) && self.stays(&to(feet[1], -way))
-            }
-            (Some(end), None) => of_face(self, end, other),
-            (None, Some(end)) => of_face(other, end, self),
-            (Some(one), Some(two)) => of_face(self, one, other) || of_face(other, two, self),
-        }
+        is_inner_minimum || self.some_face_counts(other, tolerance)
     }
 
-    /// Returns whether inner places of both axes are as near within rounding as any others.
-    ///
-    /// The squared distance is convex in both places. So where the way is perpendicular to both
-    /// axes, the distance is least.
-    fn are_level(&self, other: &Self, tolerance: Tolerance) -> bool {
-        let [one, two] = [&self.link, &other.link];
-        let axes = [one, two].map(|link| Vector::from(link.axis()));
-        let [from, to] = [two.start(), two.end()].map(|end| (end - one.start()).dot(axes[0]));
-        // The common stretch.
-        let (low, high) = (from.min(to).max(0.0), from.max(to).min(one.along().dot(axes[0])));
-        if high - low <= 8.0 * tolerance.0 {
+    /// Returns whether a face of two links counts beside the other one, where both are closest.
+    fn some_face_counts(&self, other: &Self, tolerance: Tolerance) -> bool {
+        let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
+        if !has_face(self) && !has_face(other) {
             return false;
         }
-        let place = one.start() + axes[0] * (0.5 * (low + high));
-        let foot = two.start() + two.along() * two.share_of(place);
-        let way = foot - place;
-        let slack = self.level_slack(other, way, tolerance);
-        axes.iter().all(|axis| way.dot(*axis).abs() <= slack)
-            && other.end_at(foot, 2.0 * tolerance.0).is_none()
+        let nearest = self.link.measure_link(&other.link);
+        let is_apart = nearest.distance > NEAR * tolerance.points;
+        let sides = [(self, other, nearest), (other, self, nearest.swapped())];
+        sides.into_iter().any(|(joined, other, nearest)| {
+            [0, 1].into_iter().filter(|&end| joined.is_face(end)).any(|end| {
+                if !is_apart {
+                    let nearest = joined.face_to_link(end, &other.link);
+                    return joined.face_counts(end, other, &nearest, tolerance);
+                }
+                let ahead = (nearest.on_first - joined.centre(end)).dot(joined.outward(end));
+                ahead >= -tolerance.points && joined.face_counts(end, other, &nearest, tolerance)
+            })
+        })
     }
 
-    /// Returns the component along an axis that a way perpendicular to it may have; at most
-    /// [`Tolerance::of_way`], which bounds all components while the robot moves.
-    fn level_slack(&self, other: &Self, way: Vector, tolerance: Tolerance) -> Real {
+    /// Returns whether inner places of both axes are as near within rounding as their closest
+    /// places, between which `way` leads: it is perpendicular to both within `slack`, and the axes
+    /// run beside one another.
+    ///
+    /// The squared distance is convex in both places. So where the way is perpendicular to both
+    /// axes, the distance is least. Axes that are skew by less than 35 degrees run beside one
+    /// another: if the way is their bend, rounding puts its ends inside of both or not.
+    fn are_level(&self, other: &Self, way: Vector, slack: Real) -> bool {
+        let [one, two] = [&self.link, &other.link];
+        let axes = [one, two].map(|link| Vector::from(link.axis()));
+        if axes.iter().any(|axis| way.dot(*axis).abs() > slack) {
+            return false;
+        }
+        let along = |place: Vector| (place - one.start()).dot(axes[0]);
+        let [from, to] = [two.start(), two.end()].map(along);
+        let common = from.max(to).min(along(one.end())) - from.min(to).max(0.0);
+        common > 4.0 * slack && axes[0].cross(axes[1]).length_squared() < MOST_SKEW
+    }
+
+    /// Returns the component along an axis that a way perpendicular to it may have, if the axis is
+    /// known within its rounding and `turned`; at most [`Tolerance::of_way`], which bounds all
+    /// components while the robot moves.
+    fn level_slack(&self, other: &Self, way: Vector, turned: Real, tolerance: Tolerance) -> Real {
         let distance = way.length();
         let shorter = self.link.along().length().min(other.link.along().length());
-        let turned = LEVEL + 4.0 * (tolerance.0 / shorter);
-        (tolerance.0 + distance * turned).min(tolerance.of_way(distance))
+        let turned = turned + 4.0 * (tolerance.points / shorter);
+        (tolerance.points + distance * turned).min(tolerance.of_way(distance))
+    }
+
+    /// Returns the end of the axis that is as near to another axis as `foot`, its closest place, up
+    /// to rounding: there the way has at most the component `rise` out of the link.
+    ///
+    /// The distance to a convex set is a convex function of a place: between the foot and the end
+    /// it rises nowhere more steeply than at the end. If the axes are almost parallel, rounding
+    /// moves the foot far, but this component little.
+    fn end_closest_to(&self, other: &PlacedLink, foot: Vector, rise: Real) -> Option<usize> {
+        let from = [0, 1].map(|end| (foot - self.centre(end)).length());
+        let end = usize::from(from[1] < from[0]);
+        let centre = self.centre(end);
+        let way = centre - (other.start() + other.along() * other.share_of(centre));
+        (way.dot(self.outward(end)) <= rise).then_some(end)
     }
 
     /// Returns the end that a place of the axis lies at, within `slack`.
@@ -343,10 +407,10 @@ impl JoinedLink {
         tolerance: Tolerance,
     ) -> Option<Way> {
         let slack = tolerance.of_way(nearest.distance);
-        if nearest.distance > NEAR * tolerance.0 {
+        if nearest.distance > NEAR * tolerance.points {
             let way = nearest.on_second - nearest.on_first;
             let place = other.start() + other.along() * other.share_of(nearest.on_second);
-            let way = Way { from: nearest.on_first, way, place, slack, rounding: tolerance.0 };
+            let way = Way { from: nearest.on_first, way, place, slack, rounding: tolerance.points };
             return Some(self.in_the_middle(end, way, other));
         }
         let axis = PlacedLink::between(other.start(), other.end(), 0.0, [false; 2]);
@@ -367,7 +431,7 @@ impl JoinedLink {
         // The point of a round face lies on its surface.
         let from =
             if self.link.flat()[end] { from } else { from + way * (self.link.radius() / distance) };
-        let way = Way { from, way, place: to, slack, rounding: tolerance.0 };
+        let way = Way { from, way, place: to, slack, rounding: tolerance.points };
         Some(self.in_the_middle(end, way, other))
     }
 
@@ -400,10 +464,10 @@ impl JoinedLink {
         tolerance: Tolerance,
     ) -> Way {
         let place = other.centre(other_end);
-        if nearest.distance > NEAR * tolerance.0 {
+        if nearest.distance > NEAR * tolerance.points {
             let (way, slack) =
                 (nearest.on_second - nearest.on_first, tolerance.of_way(nearest.distance));
-            return Way { from: nearest.on_first, way, place, slack, rounding: tolerance.0 };
+            return Way { from: nearest.on_first, way, place, slack, rounding: tolerance.points };
         }
         let way = place - self.centre(end);
         let distance = way.length();
@@ -412,12 +476,17 @@ impl JoinedLink {
         } else {
             self.centre(end) + way * (self.link.radius() / distance)
         };
-        Way { from, way, place, slack: tolerance.of_way(distance), rounding: tolerance.0 }
+        Way { from, way, place, slack: tolerance.of_way(distance), rounding: tolerance.points }
     }
 
     /// Returns whether the robot does not come nearer beyond the place of `way` (rule 2).
     fn stays(&self, way: &Way) -> bool {
-        let Some(end) = self.end_at(way.place, way.slack) else { return true };
+        let end = self.end_at(way.place, way.slack);
+        end.is_none_or(|end| self.stays_beyond(end, way.way, way.slack))
+    }
+
+    /// Returns whether the robot does not come nearer beyond an end. `way` leads there.
+    fn stays_beyond(&self, end: usize, way: Vector, slack: Real) -> bool {
         let Some(next) = &self.beyond[end] else { return true };
         let [here, there] = [self.link.radius(), next.radius()];
         let is_round = !next.flat()[end ^ 1];
@@ -426,7 +495,7 @@ impl JoinedLink {
         }
         let axis = Vector::from(next.axis());
         let on = if end == 0 { -axis } else { axis };
-        is_step(there, here) || way.way.dot(on) >= -way.slack
+        is_step(there, here) || way.dot(on) >= -slack
     }
 
     /// Returns whether the link beyond contains the point where another face is closest to a

@@ -140,6 +140,91 @@ fn legs_that_open_do_not_meet_however_they_are_cut() {
     }
 }
 
+/// The frames of a robot whose coordinates are rounded up to 2^20 from the origin.
+fn far_frames(random: &mut Random) -> [Pose; 4] {
+    let frame = |away: f64| {
+        let turned = random.pose(0.0).rotation;
+        Pose::from_parts(random.direction() * away, turned)
+    };
+    [0.0, 1024.0, 1_048_576.0, 1_048_576.0].map(frame)
+}
+
+/// Legs that are skew about the bend between them, which is perpendicular to both, are nearest at
+/// the bend. Rounding puts the closest places inside of both or not. Below 35 degrees they count
+/// as parallel legs do, in every frame; beyond they do not.
+#[test]
+fn skew_legs_are_as_near_as_their_bend_in_every_frame() {
+    let (mut random, mut query) = (Random::new(74), SelfQuery::new());
+    for skew in [0.0, 1e-4, 1e-3, 0.01, 0.1, 0.5, 0.6, 0.7, 1.0, 0.5 * PI, 2.0, 3.0] {
+        for opening in [0.0, 1e-12, -1e-12, 1e-9, 1e-8] {
+            if opening != 0.0 && skew > 0.6 {
+                continue;
+            }
+            let (sin, cos) = f64::sin_cos(skew);
+            let leg = Vector::new(opening, sin, cos) * 12.0;
+            let points = [Vector::Z * 10.0, Vector::ZERO, Vector::X * 4.0, Vector::X * 4.0 + leg];
+            for frame in far_frames(&mut random) {
+                let mut placed = points.map(|point| frame * point);
+                if random.below(2) == 0 {
+                    placed.reverse();
+                }
+                for make in KINDS {
+                    let chain = make(&placed, &[0.5; 3]);
+                    let found = distance(&mut query, &chain, 1.0);
+                    let expected = (skew < 0.61).then_some(3.0);
+                    assert_eq!(found.is_some(), expected.is_some(), "{skew} {opening} {frame:?}");
+                    let off = found.zip(expected).map_or(0.0, |(one, two)| one - two);
+                    assert!(off.abs() < 1e-6, "{skew} {opening} {off}");
+                }
+            }
+        }
+    }
+}
+
+/// A thin part bends back to the round shoulder that it leaves. The shoulder's point is in the thin
+/// part, or outside of it, by 1e-5: in every frame.
+#[test]
+fn a_shoulder_is_covered_in_every_frame() {
+    let (mut random, mut query) = (Random::new(75), SelfQuery::new());
+    for (by, expected) in [(-2e-5, None), (2e-5, Some(3.5))] {
+        // The point is `thick * sine` from the thin axis.
+        let (thick, thin, away) = (2.0, 0.5, 6.0);
+        let sine: f64 = thin / thick * (1.0 + by);
+        let tip = Vector::new(sine, 0.0, (1.0 - sine * sine).sqrt()) * away;
+        let bend = Vector::new(tip.x - 0.3, 0.0, 10.3);
+        let points = [Vector::Z * -9.0, Vector::ZERO, Vector::Z * 10.0, bend, tip];
+        for frame in far_frames(&mut random) {
+            let placed = points.map(|point| frame * point);
+            let chain = Chain::capsules(&placed, &[thick, thin, thin, thin]).unwrap();
+            let found = distance(&mut query, &chain, 1.0);
+            assert_eq!(found.is_some(), expected.is_some(), "{by} {frame:?} {found:?}");
+            let off = found.zip(expected).map_or(0.0, |(one, two)| one - two);
+            assert!(off.abs() < 1e-6, "{off}");
+        }
+    }
+}
+
+/// Two thick links in a plane and two thin ones between them. The inner points of the rims that
+/// look at one another are nearest, below and beyond a turn of pi, for the chain and its tube.
+#[test]
+fn rims_meet_beyond_half_a_turn_too() {
+    let mut query = SelfQuery::new();
+    let towards = |angle: f64| Vector::new(angle.sin(), 0.0, angle.cos());
+    for turn in [2.9_f64, 3.0, 3.1, 3.13, 3.15, 3.2, 3.3, 3.4, 3.42] {
+        // The last joint bends back.
+        let angles = [-0.417, 0.797, 1.697, 3.811 - turn];
+        let mut points = vec![Vector::ZERO];
+        for angle in angles {
+            points.push(points[points.len() - 1] + towards(angle) * 4.0);
+        }
+        let inner = |joint: usize, angle: f64| points[joint] + towards(angle + 0.5 * PI);
+        let expected = inner(1, angles[0]).distance(inner(3, angles[3] - PI));
+        let chain = Chain::cylinders(&points, &[1.0, 0.3, 0.3, 1.0]).unwrap();
+        let found = distance(&mut query, &chain, 1.0);
+        assert!(found.is_some_and(|found| (found - expected).abs() < 1e-9), "{turn} {found:?}");
+    }
+}
+
 /// The noise of measured points turns a straight robot by more than pi.
 #[test]
 fn a_noisy_straight_robot_never_meets_itself() {

@@ -14,7 +14,7 @@
 //!   of `w`. If the adjoining link contains the point deeper than this plus its own displacement,
 //!   it contains the point at all times.
 
-use super::{JoinedLink, Tolerance, Way};
+use super::{JoinedLink, Way, error_of_way};
 use crate::pair::two_links::NearestOfLinks;
 use crate::robot::is_step;
 use parry3d_f64::math::{Real, Vector};
@@ -32,7 +32,7 @@ pub(crate) struct MovedLinks {
 impl Way {
     /// Returns the largest error of the vector while its end points move by `points`.
     fn doubt(&self, points: Real) -> Real {
-        self.slack + points + 2.0 * Tolerance(points).of_way(self.way.length() + points)
+        self.slack + points + 2.0 * error_of_way(points, self.way.length() + points)
     }
 
     /// Returns the additional error along a direction of the robot that turns.
@@ -78,7 +78,7 @@ impl JoinedLink {
         }
         let sides = [(self, end, other, other_end), (other, other_end, self, end)];
         sides.into_iter().all(|(one, end, two, other_end)| {
-            let rounding = one.tolerance(two).0;
+            let rounding = one.tolerance(two).points;
             let (place, way) = (two.centre(other_end), two.centre(other_end) - one.centre(end));
             let from = one.centre(end) + way.normalize_or_zero() * one.link.radius();
             let way = Way { from, way, place, slack: rounding, rounding };
@@ -94,7 +94,7 @@ impl JoinedLink {
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let (way, tolerance) = (feet[1] - feet[0], self.tolerance(other));
         let slack = tolerance.of_way(way.length());
-        let way = Way { from: feet[0], way, place: feet[1], slack, rounding: tolerance.0 };
+        let way = Way { from: feet[0], way, place: feet[1], slack, rounding: tolerance.points };
         let back = Way { from: feet[1], way: -way.way, place: feet[0], ..way };
         let least = way.doubt(moved.axes) + way.turning(moved);
         let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
@@ -110,12 +110,11 @@ impl JoinedLink {
         let is_at_face =
             sides.iter().any(|(joined, _, end)| end.is_some_and(|end| joined.is_face(end)));
         !is_at_face
-            || sides.into_iter().any(|(joined, beside, end)| {
-                let may_be_at =
-                    |face: &usize| joined.is_face(*face) && end.is_none_or(|end| end == *face);
+            || sides.into_iter().any(|(joined, beside, _)| {
+                let is_face = |face: &usize| joined.is_face(*face);
                 [0, 1]
                     .into_iter()
-                    .filter(may_be_at)
+                    .filter(is_face)
                     .any(|face| joined.face_may_count(face, beside, moved))
             })
     }

@@ -4,7 +4,8 @@
 //! - **Face**: the robot's base or tip, if it is flat, or the wider side of a step
 //!   (`pair::JoinedLink`).
 //! - **In the band**: a pair of links `i < j` that share no joint and turn by at least pi / 2.
-//!   Unless all turns are queried, the turn is also less than pi. The faces of such links count by
+//!   Unless all turns are queried, the turn is also less than pi: beyond, `Descent` finds the
+//!   pair, and `JoinedLink::counts_beside` tests its faces. The faces of links in the band count by
 //!   the rule of `JoinedLink::face_counts`.
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
@@ -146,7 +147,7 @@ pub(super) struct OwnFaces {
     capsules: Vec<NodeCapsule>,
     frame: PairFrame,
     stack: Vec<[usize; 2]>,
-    rounding: Tolerance,
+    rounding: Real,
     #[cfg(test)]
     looked_at: usize,
     /// Visit every pair in the band and all faces that look at one another.
@@ -266,7 +267,7 @@ impl OwnFaces {
         self.add(robot, turns, 0, robot.links().len());
         let root = &self.nodes[0];
         let largest = root.centre.abs().max_element() + root.reach + root.radius;
-        self.rounding = Tolerance(64.0 * Real::UNIT_ROUNDOFF * largest);
+        self.rounding = 64.0 * Real::UNIT_ROUNDOFF * largest;
         self.frame = PairFrame::around([robot; 2]);
         let outline = |node: usize| self.frame.outline(robot, node);
         self.capsules.clear();
@@ -335,7 +336,7 @@ impl OwnFaces {
         let way = two.centre - one.centre;
         let away = way.length();
         // Case 2.
-        if away - one.reach - two.reach - one.radius - two.radius - self.rounding.0 > bound {
+        if away - one.reach - two.reach - one.radius - two.radius - self.rounding > bound {
             return [false; 2];
         }
         if one.first == two.first {
@@ -343,7 +344,7 @@ impl OwnFaces {
         }
         let [capsule, other] = pair.map(|place| &self.capsules[place]);
         // Capsules are hardly farther apart than the centres.
-        if away > bound && self.frame.outside(capsule.at_least(other)) - self.rounding.0 > bound {
+        if away > bound && self.frame.outside(capsule.at_least(other)) - self.rounding > bound {
             return [false; 2];
         }
         // Case 3.
@@ -463,12 +464,15 @@ impl Node {
 
     /// Returns how the node lies as seen from the faces of another. `way` leads from the other's
     /// centre to this one's.
-    fn seen_from(&self, other: &Self, way: Vector, away: Real, rounding: Tolerance) -> Seen {
+    fn seen_from(&self, other: &Self, way: Vector, away: Real, rounding: Real) -> Seen {
         let sine = self.direction.cross(other.direction).length() + self.spread + other.spread;
         let aside = other.flat * sine.min(1.0);
         let far = away + self.reach + other.reach + other.radius;
-        let slack = rounding.of_way(far);
-        let doubt = rounding.0 + slack;
+        // `JoinedLink::tolerance`: the extent of two links is at most `3 far` and a radius.
+        let extent = 3.0 * far + self.radius;
+        let pair = 32.0 * Real::UNIT_ROUNDOFF * extent;
+        let slack = Tolerance { points: rounding, pair }.of_way(far);
+        let doubt = rounding + slack;
         // From balls.
         let middle = Projection::of(way, self.direction);
         let least = [1.0, -1.0].map(|sign| middle.least_in_cone(sign, self.spread));

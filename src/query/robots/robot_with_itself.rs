@@ -53,8 +53,8 @@
 //! reaches anyway. So the turn of pi / 2 remains.
 //!
 //! The turn only saves work. `pair::JoinedLink` decides whether a face counts beside a link or
-//! another face. It also decides whether two links with a turn of pi count: the robot must lead
-//! nowhere nearer from their closest places.
+//! another face. It also decides whether two links with a turn of pi count, with or without faces:
+//! the robot must lead nowhere nearer from their closest places.
 //!
 //! # Algorithm
 //! 1. [`Descent`] searches the pairs with a turn of pi. From some pairs that do not count,
@@ -269,7 +269,7 @@ impl<'a> RobotWithItself<'a> {
             let [Some((_, one)), Some((_, two))] = &known else { return Some(limit) };
             let joined = [one, two];
             let tolerance = one.tolerance(two);
-            let bound = |limit: PairLimit| limit.distance() + tolerance.0;
+            let bound = |limit: PairLimit| limit.distance() + tolerance.of_distance();
             if look && one.is_face(1) && two.is_face(0) {
                 let may = one.face_gap(1, two, 0) <= bound(limit)
                     && one.ball(1).may_be_within(bound(limit), &two.ball(0));
