@@ -10,9 +10,8 @@
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
 //! - **Node**: a run of links, the same as the node of the link tree with its number. It stores a
-//!   ball around their axes, the segment of the tree's capsule and how far the axes are from it,
-//!   their largest radius, and a cone that contains the directions of its links and of one more on
-//!   either side.
+//!   ball around their axes, their largest radius, and a cone that contains the directions of its
+//!   links and of one more on either side.
 //!
 //! # Pruning
 //! A pair of nodes is skipped in four cases:
@@ -62,14 +61,6 @@
 //! **From balls.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Then
 //! `v . t >= least(D - C) - a - b`.
 //!
-//! **From segments.** Let all places of the axes be at most `p` and `q` from the two segments. Then
-//! `v = x + d` with `|d| <= p + q`, and `x` lies in the convex hull of the four vectors `x_k`
-//! between the ends of the segments. For any `c >= 0`, `v . t - c |v| >= least(x) - c |x| - (1 + c)
-//! (p + q)`. The right side is a concave function of `x`, since `least` is a minimum of linear
-//! functions. So it is least at one of the `x_k`. `c = 0` gives the sign of `w . t`, and the cosine
-//! of `least_covered` gives covered shoulders. For links in a row `p` and `q` are almost 0, where
-//! the balls are as long as the row.
-//!
 //! Upper bounds are the same with opposite signs.
 //!
 //! **Rounding.** Unit vectors err by 4 u, and sums of few lengths by few u of the reach: 64 u of
@@ -80,7 +71,7 @@ use super::descent::PairLimit;
 use super::pair_frame::{NodeCapsule, PairFrame};
 use super::turn_sums::TurnSums;
 use crate::distance::Scalar;
-use crate::pair::{PlacedEnds, PlacedRobot, Tolerance};
+use crate::pair::{PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};
 use parry3d_f64::math::{Real, Vector};
 
@@ -93,12 +84,8 @@ struct Node {
     /// The largest distance of a point of the axes from the centre.
     reach: Real,
     /// The start of the first link and the end of the last one.
-    ends: [Vector; 2],
-    /// The largest distance of a point of the axes from the segment between `ends`.
-    aside: Real,
-    /// The largest and the least radius.
+    /// The largest radius.
     radius: Real,
-    thinnest: Real,
     /// The largest radius of a flat face.
     flat: Real,
     direction: Vector,
@@ -239,9 +226,8 @@ impl OwnFaces {
         self.add(robot, turns, first, count / 2);
         let second = self.nodes.len();
         self.add(robot, turns, first + count / 2, count - count / 2);
-        let capsule = robot.outline(&robot.link_tree()[place]);
         let halves = [&self.nodes[place + 1], &self.nodes[second]];
-        self.nodes[place] = Node::around(halves, capsule, turns);
+        self.nodes[place] = Node::around(halves, turns);
     }
 
     /// Calls `visit` with pairs of links, the lower first, and two flags: whether the pair is in
@@ -393,10 +379,7 @@ impl Node {
             count: 1,
             centre: start + (end - start) * 0.5,
             reach: 0.5 * (end - start).length(),
-            ends: [start, end],
-            aside: 0.0,
             radius: placed.radius(),
-            thinnest: placed.radius(),
             flat: if has_flat { placed.radius() } else { 0.0 },
             direction,
             spread: spread(turns, link, 1, direction),
@@ -408,11 +391,8 @@ impl Node {
         }
     }
 
-    /// Returns the node of two halves. `capsule` is the node's outline in the link tree.
-    ///
-    /// The capsule contains a ball with the link's radius around each place of the axes. So no
-    /// place is farther from its segment than the capsule's radius minus the least radius.
-    fn around([one, two]: [&Self; 2], capsule: PlacedEnds, turns: &TurnSums) -> Self {
+    /// Returns the node of two halves.
+    fn around([one, two]: [&Self; 2], turns: &TurnSums) -> Self {
         let upwards = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         let way = two.centre - one.centre;
         let away = way.length();
@@ -426,7 +406,6 @@ impl Node {
             (one.centre + way * ((reach - one.reach) / away), reach)
         };
         let direction = (one.direction + two.direction).normalize_or_zero();
-        let thinnest = one.thinnest.min(two.thinnest);
         let either =
             |of: fn(&Self) -> [bool; 2]| [0, 1].map(|end: usize| of(one)[end] || of(two)[end]);
         Self {
@@ -434,10 +413,7 @@ impl Node {
             count: one.count + two.count,
             centre,
             reach: reach * upwards,
-            ends: capsule.0,
-            aside: capsule.1 - thinnest,
             radius: one.radius.max(two.radius),
-            thinnest,
             flat: one.flat.max(two.flat),
             direction,
             spread: spread(turns, one.first, one.count + two.count, direction),
@@ -477,28 +453,16 @@ impl Node {
         let middle = Projection::of(way, self.direction);
         let least = [1.0, -1.0].map(|sign| middle.least_in_cone(sign, self.spread));
         let off = self.reach + other.reach + aside + doubt;
-        let mut along = [least[0] - off, off - least[1]];
-        let mut hull = None;
-        if along[0] <= 0.0 && along[1] >= 0.0 {
-            let vectors = hull.insert(Hull::between(other, self));
-            let off = aside + doubt;
-            along = [vectors.least_along(1.0, 0.0) - off, off - vectors.least_along(-1.0, 0.0)];
-        }
+        let along = [least[0] - off, off - least[1]];
         let forwards = match along {
             [least, _] if least > 0.0 => true,
             [_, most] if most < 0.0 => false,
             _ => return Seen { may_be_local: true, along, forwards: None, is_covered: false },
         };
-        let (end, sign) = if forwards { (0, 1.0) } else { (1, -1.0) };
+        let end = usize::from(!forwards);
         let is_known = slack <= THINNER * self.adjoining;
         let cosine = self.covered[end].max(0.0);
-        let is_covered = is_known
-            && cosine < 1.0
-            && (least[end] - off >= cosine * far || {
-                let vectors = hull.unwrap_or_else(|| Hull::between(other, self));
-                vectors.least_along(sign, cosine) - aside - cosine * other.flat
-                    >= (1.0 + cosine) * doubt
-            });
+        let is_covered = is_known && cosine < 1.0 && least[end] - off >= cosine * far;
         Seen {
             may_be_local: self.stops[end] && !is_covered,
             along,
@@ -536,34 +500,6 @@ impl Projection {
         }
         let sine = spread * (1.0 - 0.25 * squared).sqrt();
         loose.max(along * (1.0 - 0.5 * squared) - self.across * sine)
-    }
-}
-
-/// The vectors from the axes of one node to the axes of another, from their segments (module head).
-#[derive(Clone, Copy)]
-struct Hull {
-    /// The four vectors `x_k`.
-    vectors: [Projection; 4],
-    /// `e`.
-    spread: Real,
-    /// `p + q`.
-    aside: Real,
-}
-
-impl Hull {
-    /// Returns the vectors to the axes of `to`, with the cone of `to`.
-    fn between(from: &Node, to: &Node) -> Self {
-        let vector = |k: usize| Projection::of(to.ends[k / 2] - from.ends[k % 2], to.direction);
-        let vectors = [0, 1, 2, 3].map(vector);
-        Self { vectors, spread: to.spread, aside: from.aside + to.aside }
-    }
-
-    /// Returns a lower bound on `sign v . t - cosine |v|`.
-    fn least_along(&self, sign: Real, cosine: Real) -> Real {
-        let least = self.vectors.iter().fold(Real::INFINITY, |least, vector| {
-            least.min(vector.least_in_cone(sign, self.spread) - cosine * vector.length)
-        });
-        least - (1.0 + cosine) * self.aside
     }
 }
 
