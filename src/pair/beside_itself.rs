@@ -310,21 +310,46 @@ impl JoinedLink {
         })
     }
 
+    /// Returns a link, without what is beyond its ends.
+    pub(crate) fn alone(link: PlacedLink) -> Self {
+        Self { link, beyond: [None; 2] }
+    }
+
+    /// Returns whether a pair that turns by pi or more counts whatever is beyond its ends: its axes
+    /// run level, or are closest inside of both.
+    pub(crate) fn counts_inside(&self, other: &Self, tolerance: Tolerance) -> bool {
+        self.closest_ends(other, tolerance).is_none_or(|(ends, ..)| ends == [None; 2])
+    }
+
     /// Returns whether a pair that turns by pi or more counts (section "Two links").
     pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
+        let Some((ends, way, slack)) = self.closest_ends(other, tolerance) else { return true };
+        let sides = [(self, ends[0], -way), (other, ends[1], way)];
+        let is_inner_minimum = sides.into_iter().all(|(joined, end, way)| {
+            end.is_none_or(|end| !joined.is_face(end) && joined.stays_beyond(end, way, slack))
+        });
+        is_inner_minimum || self.some_face_counts(other, tolerance)
+    }
+
+    /// Returns the end of each axis that is as near as the closest places of both, the way between
+    /// those places, and its slack; `None` if the axes run level.
+    fn closest_ends(
+        &self,
+        other: &Self,
+        tolerance: Tolerance,
+    ) -> Option<([Option<usize>; 2], Vector, Real)> {
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let way = feet[1] - feet[0];
         let slack = self.level_slack(other, way, LEVEL, tolerance);
         if self.are_level(other, way, slack) {
-            return true;
+            return None;
         }
         let rise = self.level_slack(other, way, 0.0, tolerance);
-        let sides = [(self, other, feet[0], -way), (other, self, feet[1], way)];
-        let is_inner_minimum = sides.into_iter().all(|(joined, other, foot, way)| {
-            let end = joined.end_closest_to(&other.link, foot, rise);
-            end.is_none_or(|end| !joined.is_face(end) && joined.stays_beyond(end, way, slack))
-        });
-        is_inner_minimum || self.some_face_counts(other, tolerance)
+        let ends = [
+            self.end_closest_to(&other.link, feet[0], rise),
+            other.end_closest_to(&self.link, feet[1], rise),
+        ];
+        Some((ends, way, slack))
     }
 
     /// Returns whether a face of two links counts beside the other one, where both are closest.
