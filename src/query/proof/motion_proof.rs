@@ -186,7 +186,9 @@ fn piece(
         let face = faces[end]?;
         // The direction is rounded.
         let tilt = face.tilt * (1.0 + 8.0 * Real::UNIT_ROUNDOFF) + 16.0 * Real::UNIT_ROUNDOFF;
-        let other = if flat[1 - end] { radius * (bend + tilt) } else { 0.0 };
+        // A heuristic: a back that is not at a face does not stick out of the tube.
+        let is_face = is_at[1 - end] && flat[1 - end];
+        let other = if is_face { radius * (bend + tilt) } else { 0.0 };
         let excess = 0.5 * bend * length + tilt * (length + radius) + other;
         let is_possible = excess <= by_chord && bend + tilt <= 1.5 && curvature * radius < 1.0;
         is_possible.then(|| (end, tilt, tube.face(&face).outward))
