@@ -53,10 +53,10 @@
 //!    sides. If it fails, the robot comes nearer beyond that place, so the place is no local
 //!    minimum.
 //! 3. Otherwise the pair counts if a face counts beside the other link. The closest places of the
-//!    axes do not tell: the rim of a flat face may be nearest where the axis leads on.
+//!    axes do not decide this: a flat face may be nearest at its rim, far from its axis.
 //!
-//! In case 3 the closest points of the face and the other link are those of both links, which are
-//! convex: by condition 1 no point of the face's link lies ahead of `p` along `w`.
+//! In case 3 the closest points of the face and the other link are also the closest points of both
+//! links. Both are convex: by condition 1 no point of the face's link lies ahead of `p` along `w`.
 //!
 //! **Level.** Axes run level if the way between them has a component of at most
 //! `e + |w| (2^-24 + 4 e / l)` along each axis. Here `e` is the rounding of the coordinates and `l`
@@ -98,17 +98,23 @@ pub(crate) struct JoinedLink {
     pub beyond: [Option<PlacedLink>; 2],
 }
 
-/// The largest errors of what is measured of two links of one robot.
+/// The largest errors of the distance of two links of one robot, and of their closest points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tolerance {
     /// Of the difference of two points in the robot's frame.
     pub points: Real,
-    /// Of the distance in the pair's own coordinates, in which the two links are measured. It
-    /// depends neither on the frame nor on the order of the links.
+    /// Of the distance in the pair's own coordinates, in which the two links are measured. It is the
+    /// same in every frame and in both orders of the links.
     pub pair: Real,
 }
 
 impl Tolerance {
+    /// Returns the errors of two links whose points differ by at most `extent` in each coordinate
+    /// ([`JoinedLink::tolerance`]).
+    pub fn new(points: Real, extent: Real) -> Self {
+        Self { points, pair: 32.0 * Real::UNIT_ROUNDOFF * extent }
+    }
+
     /// Returns the largest error of a distance.
     pub fn of_distance(self) -> Real {
         self.points + self.pair
@@ -192,7 +198,7 @@ impl JoinedLink {
         }
     }
 
-    /// Returns the largest errors of what is measured of two links of one robot.
+    /// Returns the largest errors of the distance and the closest points.
     ///
     /// Let `S` be the largest coordinate of both links plus their radius, and `X` a length that no
     /// coordinate difference of two of their points exceeds.
@@ -211,10 +217,7 @@ impl JoinedLink {
         let middle = |link: &PlacedLink| link.start() + 0.5 * link.along();
         let size = |link: &PlacedLink| link.along().length() + link.radius();
         let extent = (middle(two) - middle(one)).length() + size(one) + size(two);
-        Tolerance {
-            points: 16.0 * Real::UNIT_ROUNDOFF * reach(one).max(reach(two)),
-            pair: 32.0 * Real::UNIT_ROUNDOFF * extent,
-        }
+        Tolerance::new(16.0 * Real::UNIT_ROUNDOFF * reach(one).max(reach(two)), extent)
     }
 
     fn centre(&self, end: usize) -> Vector {
@@ -315,20 +318,25 @@ impl JoinedLink {
         Self { link, beyond: [None; 2] }
     }
 
-    /// Returns whether a pair that turns by pi or more counts whatever is beyond its ends: its axes
-    /// run level, or are closest inside of both.
-    pub(crate) fn counts_inside(&self, other: &Self, tolerance: Tolerance) -> bool {
-        self.closest_ends(other, tolerance).is_none_or(|(ends, ..)| ends == [None; 2])
-    }
-
-    /// Returns whether a pair that turns by pi or more counts (section "Two links").
-    pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
+    /// Returns whether a pair that turns by pi or more counts (section "Two links"). `joined`
+    /// returns both links with what is beyond their ends. It is asked only if a closest place of
+    /// the axes is at an end.
+    pub(crate) fn counts_beside(
+        &self,
+        other: &Self,
+        tolerance: Tolerance,
+        joined: impl FnOnce() -> [Self; 2],
+    ) -> bool {
         let Some((ends, way, slack)) = self.closest_ends(other, tolerance) else { return true };
-        let sides = [(self, ends[0], -way), (other, ends[1], way)];
+        if ends == [None; 2] {
+            return true;
+        }
+        let [one, two] = &joined();
+        let sides = [(one, ends[0], -way), (two, ends[1], way)];
         let is_inner_minimum = sides.into_iter().all(|(joined, end, way)| {
             end.is_none_or(|end| !joined.is_face(end) && joined.stays_beyond(end, way, slack))
         });
-        is_inner_minimum || self.some_face_counts(other, tolerance)
+        is_inner_minimum || one.some_face_counts(two, tolerance)
     }
 
     /// Returns the end of each axis that is as near as the closest places of both, the way between

@@ -563,7 +563,7 @@ impl<'a> TubeWithItself<'a> {
         let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
         let tolerance = one.tolerance(&two);
         match pair.faces {
-            [None, None] => one.counts_beside(&two, tolerance),
+            [None, None] => one.counts_beside(&two, tolerance, || [one, two]),
             [Some(end), None] => {
                 one.face_counts(end, &two, &one.face_to_link(end, &two.link), tolerance)
             }

@@ -14,7 +14,7 @@
 //!
 //! The least slack combines the slacks of the structures, then of the pairs of robots, each nearest
 //! first by their bounds ([`LeastSlack`]). All pairs of robots share one limit of work; each but
-//! the last takes at most half of what is left.
+//! the last takes at most half of the remaining work.
 //!
 //! The queries share the shapes of their first intervals. They share nothing else, so each decides
 //! as if it were the only one.
@@ -669,8 +669,8 @@ mod tests {
         }
         assert!(pairs > 16 && !is_enough(8, pairs) && is_enough(8, 4 * pairs), "{pairs}");
 
-        // A third robot passes at a distance of 21, on a diagonal. Its boxes meet those of the
-        // others, so bounds on its distance need work, which no other pair uses up.
+        // A third robot passes at a distance of 21, on a diagonal. Its boxes meet the boxes
+        // of the others, so bounds on its distance need work, which no other pair uses up.
         let [from, to] = [bend(-30.0, 0.0, 0.0), bend(0.0, -30.0, 0.0)];
         let third = LinearMotion::chain(&from, &to, &[0.5; 8]);
         let motions = [&robots[0], &robots[1], &third.unwrap()];

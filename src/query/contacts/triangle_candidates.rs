@@ -151,8 +151,8 @@ impl TriangleCandidate {
         PART_WITHOUT[self.away as usize].map(usize::from)
     }
 
-    /// Returns the corners and edges that may hold the nearest point, one bit for each: those that
-    /// are not certainly farther. A corner is farther, if one of its edges is.
+    /// Returns the corners and edges that may hold the nearest point, one bit for each: all that are
+    /// not certainly farther. A corner is farther if one of its edges is.
     pub(crate) fn near_parts(&self) -> u64 {
         let edges = u64::from(self.beyond);
         let corners = (edges | edges << 1 | edges >> 2) & 0b111;

@@ -446,8 +446,7 @@ impl Node {
         let far = away + self.reach + other.reach + other.radius;
         // `JoinedLink::tolerance`: the extent of two links is at most `3 far` and a radius.
         let extent = 3.0 * far + self.radius;
-        let pair = 32.0 * Real::UNIT_ROUNDOFF * extent;
-        let slack = Tolerance { points: rounding, pair }.of_way(far);
+        let slack = Tolerance::new(rounding, extent).of_way(far);
         let doubt = rounding + slack;
         // From balls.
         let middle = Projection::of(way, self.direction);

@@ -179,11 +179,7 @@ impl<'a> RobotWithItself<'a> {
     /// Whether two links with a turn of pi between them count.
     fn counts(&self, links: [usize; 2]) -> bool {
         let [one, two] = links.map(|link| JoinedLink::alone(self.robot.link(link)));
-        let tolerance = one.tolerance(&two);
-        one.counts_inside(&two, tolerance) || {
-            let [one, two] = links.map(|link| self.joined(link));
-            one.counts_beside(&two, tolerance)
-        }
+        one.counts_beside(&two, one.tolerance(&two), || links.map(|link| self.joined(link)))
     }
 
     /// Moves from a rejected pair to nearer ones. Returns the last pair if it counts. Of the
